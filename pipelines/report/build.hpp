@@ -1,0 +1,104 @@
+#pragma once
+/// What fills documents: numbers with the digits they deserve, tables out of data::Table, curves out of data::Signal,
+/// and the pictures that stages share. Nothing here knows of HTML.
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "data/model/error.hpp"
+#include "data/model/signal.hpp"
+#include "data/model/table.hpp"
+#include "pipelines/report/document.hpp"
+
+namespace brachium::pipelines::report {
+
+// ---------------------------------------------------------------- text and numbers
+
+/// `value` rounded to significant digits (1..17), trailing zeros kept as they are significant: 0.12, 1.50, 1.2e-07
+/// outside [1e-4, 1e7). Not a number: "-"; infinite: "∞". Minus is U+2212.
+std::string significant(double value, int digits = 4);
+/// `value` with a fixed number of decimals.
+std::string fixed(double value, int decimals);
+/// "1.50 N m", number and unit joined by a no-break space; unit "1" or "" gives the number alone.
+std::string quantity(double value, const std::string& unit, int digits = 4);
+/// 0.0421 -> "4.2 %".
+std::string percent(double fraction, int digits = 2);
+/// "0.8 s", "3 min 12 s", "2 h 05 min".
+std::string duration(double seconds);
+
+Cell make_text_cell(std::string text, Tone tone = Tone::plain);
+Cell make_number_cell(double value, int digits = 4, Tone tone = Tone::plain);
+
+Tone tone_of(data::Severity severity);
+/// Code, message, place and help as one finding.
+Paragraph make_finding(const data::Diagnostic& diagnostic);
+
+// ---------------------------------------------------------------- tables
+
+/// The tone of verdict texts as calibration and quality write them: bad for "NOT IDENTIFIED" and "failed",
+/// warning for "AT ... BOUND", "excluded", "correlated", good for "identified", "ok" and "passed"; else plain.
+Tone verdict_tone(const std::string& text);
+/// Good, warning or bad by thresholds; falling = true: small values are good.
+Tone threshold_tone(double value, double good, double bad);
+
+struct GridOptions {
+  int digits = 4;                                       ///< significant digits of numbers
+  std::map<std::string, int> column_digits{};           ///< by column name, where they differ
+  std::map<std::string, std::string> names{};           ///< shown instead of the column's name
+  std::map<std::string, std::string> units{};           ///< shown in another unit of the same dimension
+  std::map<std::string, std::function<Tone(double)>> number_tone{};            ///< by column name
+  std::map<std::string, std::function<Tone(const std::string&)>> text_tone{};  ///< by column name
+  std::vector<std::string> columns{};                   ///< which and in which order; empty: all
+  bool verdicts = true;                                 ///< verdict_tone on text columns without a rule
+};
+
+/// A data table as a grid; units go to the header: "RMSE [N m]".
+/// Throws InputError("missing-column") for a column that the table does not have.
+Grid make_grid(const data::Table& table, const GridOptions& options = {});
+
+// ---------------------------------------------------------------- plots
+
+/// A signal over its own clock [s], converted to `unit` ("" keeps the stored one; "deg" for rad, "µV" for V, ...).
+Series make_series(const data::Signal& signal, const std::string& label, const std::string& unit = "",
+                   Style style = Style::line);
+
+/// Time series of one quantity: x is "time [s]", y is `quantity_name [unit]`. Labels are muscle names, else signal names.
+Plot make_time_plot(const std::string& title, const std::string& quantity_name,
+                    std::span<const data::Signal* const> signals, const std::string& unit = "");
+
+/// Measured and modelled values of one quantity on the same frames.
+struct Pair {
+  std::span<const double> time_s;    ///< [n]
+  std::span<const double> measured;  ///< [n] in `unit`
+  std::span<const double> modelled;  ///< [n] in `unit`
+  std::string quantity;              ///< "elbow moment"
+  std::string unit;                  ///< "N m"
+};
+
+/// Figures of agreement over the frames where both are finite; residual = modelled - measured.
+struct AgreementFigures {
+  std::size_t frames = 0;
+  double rmse = 0.0, mean_absolute = 0.0, largest = 0.0;  ///< in the unit of the values
+  double nrmse = 0.0;       ///< rmse / (largest - smallest measured)
+  double r_squared = 0.0;   ///< 1 - sum residual^2 / sum (measured - mean)^2: negative when worse than the mean
+  double bias = 0.0;        ///< mean residual
+  double deviation = 0.0;   ///< standard deviation of the residual, n - 1
+};
+
+/// Needs 2 frames with both values finite and measured values that vary: InputError("no-common-frames"),
+/// InputError("zero-variance").
+AgreementFigures agreement_figures(std::span<const double> measured, std::span<const double> modelled);
+
+/// Measured (line) and modelled (dashed) over time with the residual under them, figures in the note.
+Plot make_agreement_plot(const std::string& title, const Pair& pair);
+/// Modelled against measured, equal axes, identity line.
+Plot make_scatter_plot(const std::string& title, const Pair& pair);
+/// Difference against mean with bias and limits of agreement, bias +- 1.96 sd (Bland & Altman 1986,
+/// doi:10.1016/S0140-6736(86)90837-8). Frames of one recording depend on each other, so the limits describe these
+/// frames; the note says so.
+Plot make_bland_altman_plot(const std::string& title, const Pair& pair);
+
+}  // namespace brachium::pipelines::report
