@@ -1,0 +1,40 @@
+#pragma once
+/// OpenSim storage files, .sto and .mot, in all dialects met: version 1 to 3 headers, CEINMS' `datacolumns/datarows`
+/// (as SIMM wrote them, with `range`), no version at all, missing row and column counts, comment text before
+/// `endheader`, headers and rows saved as CSV by a spreadsheet, trailing delimiters.
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+
+#include "data/io/recording.hpp"
+#include "data/model/signal.hpp"
+
+namespace brachium::io {
+
+/// Columns of a storage file that are angles. inDegrees=yes says that *rotational* columns are in degrees, but not
+/// which columns those are. Stated rule: a column is rotational unless its name ends in _tx, _ty, _tz (OpenSim's
+/// names of translations), in _force or _moment, or holds ".activation", ".fiber_length" or "/value"-less state
+/// names of muscles. Such columns carry the unit "deg", others none; import needs a unit for those it uses.
+bool is_rotational_column(const std::string& name);
+
+struct StorageHeader {
+  int version = 0;                            ///< 0: not stated
+  bool in_degrees = false;
+  std::map<std::string, std::string> fields;  ///< every key=value of the header, as written
+};
+
+/// Opens a storage file. A stated row count that disagrees with the rows is an error found by check_timing; a stated
+/// column count that disagrees with the column labels is "column-count-mismatch" here.
+/// Throws InputError: "missing-file", "empty-file", "not-a-storage-file", "column-count-mismatch", "duplicate-column",
+/// "unsupported-data-type" (DataType other than double).
+Recording open_storage(const std::filesystem::path& file, StorageHeader* header = nullptr);
+
+/// Writes signals of equal rate, start and count as a version-1 storage file (tab separated, 17 digits), atomically.
+/// Angles are written in radians with inDegrees=no, or in degrees with inDegrees=yes.
+/// Throws InputError("unequal-time-stamps") naming the first signal that differs.
+void write_storage(std::span<const data::Signal> signals, const std::string& title, const std::filesystem::path& file,
+                   bool in_degrees = false);
+
+}  // namespace brachium::io
