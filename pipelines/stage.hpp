@@ -139,6 +139,7 @@ struct StageSpec {
   std::function<void(const StageContext&, StageOutput&)> run;
   std::function<void(const ReportContext&, report::Section&)> report;           ///< may be empty
   std::function<std::string(const ReportContext&)> methods;                     ///< may be empty
+  int version = 1;  ///< raised when the stage gives other results for the same inputs and options
 };
 
 /// All stages by name. Each folder adds its own (pipelines/stages/*.cpp).
