@@ -41,6 +41,7 @@ struct PathGeometry {
   std::vector<double> moment_arm_m;  ///< coefficients or values; r = -dL/dq
   double reference_length_m = 0.0;   ///< L at reference_angle_rad, used when length_m is empty
   double reference_angle_rad = 0.0;
+  double consistency_tolerance_m = 1e-3;  ///< largest |r + dL/dq| accepted where length and moment arm are both given
 };
 
 /// How a muscle gets its excitation: e = sum_k weight_k * channel_k.

@@ -17,6 +17,8 @@ struct Coordinate {
   double lower_rad = 0.0;  ///< range the scene's geometry is valid for
   double upper_rad = 0.0;
   std::string angle_signal;  ///< signal of a session that records it (default: the coordinate's name)
+  std::string parent;                    ///< proximal neighbour in a planar chain of hinges; empty: fixed to the ground
+  double distance_from_parent_m = 0.0;   ///< from the parent's hinge to this one, along the parent's segment
 };
 
 /// A rigid segment distal to a hinge, described along its long axis from the joint.
@@ -28,6 +30,9 @@ struct Segment {
   double centre_of_mass_m = 0.0;      ///< distance from the joint along the segment
   double inertia_kg_m2 = 0.0;         ///< about the centre of mass, about the hinge axis
   std::string source;
+  double body_mass_fraction = 0.0;    ///< mass_kg / body mass where the scene gives that; 0: mass given by itself
+  double centre_of_mass_sd_m = 0.0;   ///< standard uncertainty
+  double inertia_relative_sd = 0.0;   ///< relative standard uncertainty
 };
 
 /// A mass or force held by a segment.
@@ -57,6 +62,7 @@ struct Scene {
   std::string file;                      ///< where it was read from
   std::vector<std::string> wanted;       ///< wanted quantities, e.g. "elbow_flexion.moment"
   double body_mass_kg = 0.0;             ///< assumed or measured; 0 where not needed
+  double body_mass_relative_sd = 0.0;    ///< relative standard uncertainty, shared by all fractions of the body mass
   std::string body_mass_source;
   double upper_arm_inclination_rad = 0.0;  ///< from vertical, used only where no orientation is recorded
   std::vector<Coordinate> coordinates;
