@@ -1,0 +1,72 @@
+#pragma once
+/// What a least-squares fit says of its parameters: covariance under autocorrelated residuals, directions that
+/// the data do not see, correlations.
+///
+/// | symbol | identifier          | unit      | meaning                                                        |
+/// |--------|---------------------|-----------|----------------------------------------------------------------|
+/// | J      | jacobian            | 1 / unit  | m x n, residual rows only                                      |
+/// | P      | -                   | 1 / unit^2| diagonal of 1 / sd^2 of the priors                             |
+/// | H      | -                   | 1 / unit^2| s^2-weighted information J'J / s^2 + P                         |
+/// | S      | -                   | 1 / unit^2| long-run covariance of the scores J_i' r_i (Newey-West)        |
+/// | C      | covariance          | unit^2    | parameter covariance                                           |
+/// | tau    | inflation           | 1         | samples per independent sample                                 |
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "optimise/problem.hpp"
+
+namespace brachium::optimise {
+
+/// One contiguous, equally spaced run of residuals (a trial): correlation is sought inside, never across.
+struct ResidualBlock {
+  std::string name;
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// A direction in scaled parameter space along which the cost hardly changes.
+struct WeakDirection {
+  double relative_singular_value = 0.0;  ///< of the scaled Jacobian, against the largest
+  std::vector<std::string> parameters;   ///< labels of the parameters that take part (|component| > 0.25)
+  std::vector<double> components;        ///< of the unit vector, for these parameters
+  std::string text;                      ///< "BICEPS gain (+0.71) with BIC strength (-0.70)"
+};
+
+struct CorrelatedPair {
+  std::size_t first = 0, second = 0;  ///< indices of parameters
+  double correlation = 0.0;
+};
+
+struct FitStatistics {
+  double residual_sd = 0.0;          ///< sqrt(sum r^2 / (m - n)), in units of the scaled residuals
+  double effective_samples = 0.0;    ///< m / tau
+  double inflation = 1.0;            ///< tau >= 1: sum over blocks and lags of the residuals' autocorrelation
+  Eigen::MatrixXd covariance;        ///< n x n; rows of unidentified parameters are what priors and bounds leave
+  Eigen::VectorXd standard_error;    ///< sqrt of the diagonal; infinite along a singular direction without prior
+  Eigen::VectorXd prior_ratio;       ///< posterior sd / prior sd, 0 where there is no prior: near 1, the prior decides
+  std::vector<WeakDirection> weak;   ///< singular directions
+  std::vector<CorrelatedPair> correlated;  ///< |correlation| > 0.95
+  Eigen::VectorXd singular_values;   ///< of the scaled Jacobian (columns times scale)
+};
+
+struct StatisticsOptions {
+  double singular_tolerance = 1e-6;      ///< relative singular value below which a direction counts as unseen
+  double correlation_threshold = 0.95;
+  std::size_t max_lag = 0;               ///< samples; 0: automatic, first crossing of zero of the residuals' autocorrelation
+  std::vector<bool> fixed;               ///< parameters at a bound, held there: no share in the covariance
+};
+
+/// Covariance at a solution by the sandwich C = H^-1 S H^-1 with Bartlett weights (Newey & West 1987,
+/// doi:10.2307/1913610), but never below the classical one inflated by tau. A residual that is zero to rounding
+/// (noise-free data) gives a covariance of zero with the weak directions still named.
+FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x,
+                             const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian,
+                             const std::vector<ResidualBlock>& blocks, const StatisticsOptions& options = {});
+
+/// Quantile of Student's t distribution (two-sided 95 % by default) for nu > 0 degrees of freedom, by GSL.
+double student_quantile(double degrees_of_freedom, double probability = 0.975);
+
+}  // namespace brachium::optimise
