@@ -1,0 +1,51 @@
+#pragma once
+/// When does a muscle switch on and off?
+///
+/// threshold  Rectified, low-passed EMG; active where the mean of a window exceeds the baseline's mean + h SD
+///            (Hodges & Bui 1996, doi:10.1016/S0921-884X(96)95190-5).
+/// tkeo       The same after the Teager-Kaiser operator ψ_k = x_k^2 - x_(k-1) x_(k+1), which is large where amplitude
+///            and frequency are (Li, Zhou & Aruin 2007, doi:10.1007/s10439-007-9320-z).
+/// Both with a second threshold in time: shorter activity and shorter gaps do not count.
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace brachium::emg {
+
+enum class OnsetMethod { threshold, tkeo };
+std::string to_string(OnsetMethod method);
+OnsetMethod parse_onset_method(const std::string& name);  ///< throws InputError("unknown-onset-method")
+
+struct OnsetOptions {
+  OnsetMethod method = OnsetMethod::tkeo;
+  double factor = 0.0;             ///< h; 0: 3 for threshold, 15 for tkeo
+  double lowpass_hz = 50.0;        ///< smoothing of the detector signal, zero lag
+  double window_s = 0.025;         ///< of the mean that must exceed the threshold (Hodges & Bui: 25 ms)
+  double minimum_active_s = 0.05;  ///< shorter bursts are dropped
+  double minimum_gap_s = 0.05;     ///< shorter gaps are closed
+  double baseline_from_s = 0.0;    ///< rest on the trial's clock; from == to: the quietest baseline_length_s is found
+  double baseline_to_s = 0.0;
+  double baseline_length_s = 0.5;
+};
+
+struct Burst {
+  double onset_s = 0.0, offset_s = 0.0;  ///< on the trial's clock
+  double mean_detector = 0.0;            ///< mean of the detector signal over it / threshold
+  bool cut_at_start = false, cut_at_end = false;  ///< active at the trial's first or last sample
+};
+
+struct OnsetResult {
+  std::vector<Burst> bursts;
+  double threshold = 0.0;                 ///< in the detector's unit
+  double baseline_mean = 0.0, baseline_sd = 0.0;
+  double baseline_from_s = 0.0, baseline_to_s = 0.0;
+};
+
+/// samples: offset-free, band-passed EMG. Throws data::InputError: "out-of-range", "trial-too-short",
+/// "not-finite", "constant-channel" when the baseline does not vary at all.
+OnsetResult detect_onsets(std::span<const double> samples, double rate_hz, double start_time_s,
+                          const std::string& channel, const OnsetOptions& options);
+
+}  // namespace brachium::emg
