@@ -180,7 +180,15 @@ TomlNode value_tree(const OptionValue& value, const OptionSpec* spec) {
         if constexpr (std::is_same_v<T, std::vector<Options>>) {
           TomlNode list;
           list.kind = TomlNode::Kind::array;
-          for (const Options& o : v) list.items.push_back(options_tree(o, spec ? std::span(spec->fields) : std::span<const OptionSpec>{}));
+          for (const Options& o : v) {
+            if (spec) {
+              list.items.push_back(options_tree(o, spec->fields));
+            } else {
+              TomlNode table = TomlNode::table();
+              for (const auto& [key, entry] : o.values()) table.member(key) = value_tree(entry, nullptr);
+              list.items.push_back(std::move(table));
+            }
+          }
           return list;
         } else {
           return TomlNode::of(v);
@@ -240,21 +248,22 @@ TomlNode options_tree(const Options& options, std::span<const OptionSpec> specs)
 }
 
 std::string value_text(const OptionValue& value) {
-  TomlNode root = TomlNode::table();
-  if (const auto* tables = std::get_if<std::vector<Options>>(&value)) {
+  return node_text(value_tree(value, nullptr));
+}
+
+std::string node_text(const TomlNode& value) {
+  if (value.kind == TomlNode::Kind::table) {
+    std::string out = "{";
+    for (const auto& [key, member] : value.members) out += (out.size() > 1 ? ", " : " ") + key + " = " + node_text(member);
+    return out + " }";
+  }
+  if (value.kind == TomlNode::Kind::array) {
     std::string out = "[";
-    for (const Options& o : *tables) {
-      out += out.size() > 1 ? ", {" : "{";
-      bool first = true;
-      for (const auto& [key, v] : o.values()) {
-        out += (first ? " " : ", ") + key + " = " + value_text(v);
-        first = false;
-      }
-      out += " }";
-    }
+    for (const TomlNode& item : value.items) out += (out.size() > 1 ? ", " : "") + node_text(item);
     return out + "]";
   }
-  root.member("v") = value_tree(value, nullptr);
+  TomlNode root = TomlNode::table();
+  root.member("v") = value;
   const std::string text = io::write_toml(root);  // "v = ...\n"
   return text.substr(4, text.size() - 5);
 }

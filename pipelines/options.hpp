@@ -25,6 +25,9 @@ io::TomlNode options_tree(const Options& options, std::span<const OptionSpec> sp
 /// One value as TOML would write it: 6.0, "mvc", [1.0, 2.0].
 std::string value_text(const OptionValue& value);
 
+/// A TOML value as it would stand right of `=`.
+std::string node_text(const io::TomlNode& value);
+
 /// "0.1 to 500 Hz", "greater than 0", "" where there is no range.
 std::string range_text(const OptionSpec& spec);
 
