@@ -12,28 +12,21 @@
 /// | f_v    | velocity   | 1             | force-velocity multiplier                                      |
 /// | f_t    | tendon     | F0            | tendon force                                                   |
 
+#include <concepts>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "data/model/curve.hpp"
+#include "hill/curve_values.hpp"
 #include "hill/degroote_fregly_2016.hpp"
 #include "hill/guenther_2007.hpp"
 #include "hill/lloyd_2003.hpp"
 #include "hill/millard_2012.hpp"
 #include "hill/thelen_2003.hpp"
-#include "hill/velocity_value.hpp"
 
 namespace brachium::hill {
-
-/// Where each curve of a set may be evaluated.
-struct CurveDomains {
-  data::Domain active;
-  data::Domain passive;
-  data::Domain velocity;
-  data::Domain tendon;  ///< in strain
-};
 
 /// Any of the published sets, with the parameters it was built with. A value type; safe to share between threads.
 class CurveSet {

@@ -33,8 +33,7 @@ struct PathTrace {
 enum class FrameStatus : std::uint8_t {
   ok,
   unloaded,   ///< the fibres would push, or carry nothing: the tendon is not taut, force 0
-  slack,      ///< the path is too short for the slack tendon and the shortest fibre (0.01 l_opt): force 0
-  unresolved  ///< the elastic root did not reach its tolerance; force 0. The chain throws unless asked not to
+  slack       ///< the path is too short for the slack tendon and the shortest fibre: force 0
 };
 std::string to_string(FrameStatus status);
 

@@ -40,7 +40,11 @@ struct MuscleModelOptions {
   double optimal_length_coupling = 0.0;         ///< p in [0, 1]
 };
 
-/// "rigid" | "elastic"; "zero_lag" | "causal" | "none"; "none" | "ceinms". Throw InputError with the nearest name.
+/// All of CEINMS' choices: its spline through the points of Lloyd & Besier, p = 0.15, its conventions.
+MuscleModelOptions ceinms_options(TendonKind tendon);
+
+/// "rigid" | "elastic"; "zero_lag" | "causal" | "none"; "none" | "ceinms". Throw
+/// InputError("unknown-choice") with the nearest name.
 TendonKind parse_tendon(std::string_view name);
 FibreVelocity parse_fibre_velocity(std::string_view name);
 Compatibility parse_compatibility(std::string_view name);
