@@ -24,7 +24,7 @@ class Resolver {
     for (const auto& m : scene.muscles) names_.push_back(m.name);
   }
 
-  std::vector<Diagnostic> run() {
+  std::vector<DriveMistake> run() {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       trail_.clear();
       resolve(i);
@@ -35,8 +35,9 @@ class Resolver {
  private:
   enum class State { open, busy, done };
 
-  void mistake(const char* code, std::string message, std::string help = {}) {
-    mistakes_.push_back({Severity::error, code, std::move(message), std::nullopt, std::move(help)});
+  void mistake(std::size_t muscle, std::string item, const char* code, std::string message, std::string help = {}) {
+    mistakes_.push_back(
+        {muscle, std::move(item), {Severity::error, code, std::move(message), std::nullopt, std::move(help)}});
   }
 
   void resolve(std::size_t m) {
@@ -44,7 +45,7 @@ class Resolver {
     trail_.push_back(names_[m]);
     if (state_[m] == State::busy) {
       const auto start = std::find(trail_.begin(), trail_.end(), names_[m]);
-      mistake("rule-cycle", fmt::format("the drive rules of `{}` form a cycle: {}", names_[m],
+      mistake(m, {}, "rule-cycle", fmt::format("the drive rules of `{}` form a cycle: {}", names_[m],
                                         fmt::join(start, trail_.end(), " -> ")),
               "drive one of them by channels");
       trail_.pop_back();
@@ -61,12 +62,12 @@ class Resolver {
   void by_channels(std::size_t m, const MuscleDrive& drive) {
     for (const auto& [channel, weight] : drive.channels) {
       if (!(weight >= 0.0) || !std::isfinite(weight)) {
-        mistake("out-of-range", fmt::format("the weight of channel `{}` for muscle `{}` must be 0 or greater, not {}", channel,
+        mistake(m, channel, "out-of-range", fmt::format("the weight of channel `{}` for muscle `{}` must be 0 or greater, not {}", channel,
                                             names_[m], weight));
       }
       const auto at = std::find(channels_.begin(), channels_.end(), channel);
       if (at == channels_.end()) {
-        mistake("unmapped-channel", fmt::format("muscle `{}` is driven by channel `{}`, which is not recorded", names_[m], channel),
+        mistake(m, channel, "unmapped-channel", fmt::format("muscle `{}` is driven by channel `{}`, which is not recorded", names_[m], channel),
                 data::suggest(channel, channels_));
         continue;
       }
@@ -78,12 +79,12 @@ class Resolver {
     const bool same = drive.rule == "same_as";
     if (!same && drive.rule != "mean_of") {
       const std::vector<std::string> known{"same_as", "mean_of"};
-      mistake("unknown-rule", fmt::format("`{}` is not a drive rule (muscle `{}`)", drive.rule, names_[m]),
+      mistake(m, drive.rule, "unknown-rule", fmt::format("`{}` is not a drive rule (muscle `{}`)", drive.rule, names_[m]),
               data::suggest(drive.rule, known));
       return;
     }
     if (same ? drive.muscles.size() != 1 : drive.muscles.size() < 2) {
-      mistake("bad-rule", fmt::format("rule `{}` of muscle `{}` takes {}, not {} muscles", drive.rule, names_[m],
+      mistake(m, drive.rule, "bad-rule", fmt::format("rule `{}` of muscle `{}` takes {}, not {} muscles", drive.rule, names_[m],
                                       same ? "one muscle" : "two or more muscles", drive.muscles.size()));
       return;
     }
@@ -91,14 +92,14 @@ class Resolver {
     for (const std::string& source : drive.muscles) {
       const auto at = std::find(names_.begin(), names_.end(), source);
       if (at == names_.end()) {
-        mistake("unknown-muscle", fmt::format("the drive rule of muscle `{}` names `{}`, which is not in the scene", names_[m],
+        mistake(m, source, "unknown-muscle", fmt::format("the drive rule of muscle `{}` names `{}`, which is not in the scene", names_[m],
                                               source),
                 data::suggest(source, names_));
         continue;
       }
       const auto s = static_cast<std::size_t>(at - names_.begin());
       if (scene_.muscles[s].drive.kind == MuscleDrive::Kind::undriven) {
-        mistake("undriven-source", fmt::format("the drive rule of muscle `{}` names `{}`, which has no drive itself", names_[m],
+        mistake(m, source, "undriven-source", fmt::format("the drive rule of muscle `{}` names `{}`, which has no drive itself", names_[m],
                                                source));
         continue;
       }
@@ -112,18 +113,26 @@ class Resolver {
   Eigen::MatrixXd& weights_;
   std::vector<State> state_;
   std::vector<std::string> names_, trail_;
-  std::vector<Diagnostic> mistakes_;
+  std::vector<DriveMistake> mistakes_;
 };
 
 }  // namespace
+
+std::vector<DriveMistake> drive_mistakes(const data::Scene& scene, std::span<const std::string> available_channels) {
+  const std::vector<std::string> available(available_channels.begin(), available_channels.end());
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(scene.muscles.size()),
+                                                  static_cast<Eigen::Index>(available.size()));
+  return Resolver(scene, available, weights).run();
+}
 
 DriveMap drive_map(const data::Scene& scene, std::span<const std::string> available_channels) {
   DriveMap map;
   const std::vector<std::string> available(available_channels.begin(), available_channels.end());
   const auto rows = static_cast<Eigen::Index>(scene.muscles.size());
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(available.size()));
-  std::vector<Diagnostic> mistakes = Resolver(scene, available, all).run();
-  if (!mistakes.empty()) throw data::InputError(std::move(mistakes));
+  std::vector<Diagnostic> findings;
+  for (DriveMistake& mistake : Resolver(scene, available, all).run()) findings.push_back(std::move(mistake.finding));
+  if (!findings.empty()) throw data::InputError(std::move(findings));
   for (const auto& muscle : scene.muscles) {
     map.muscles.push_back(muscle.name);
     if (muscle.drive.kind == MuscleDrive::Kind::undriven) map.undriven.push_back(muscle.name);
@@ -139,7 +148,7 @@ DriveMap drive_map(const data::Scene& scene, std::span<const std::string> availa
   return map;
 }
 
-DriveMap drive_map(const data::Scene& scene) {
+std::vector<std::string> named_channels(const data::Scene& scene) {
   std::vector<std::string> channels;
   for (const auto& muscle : scene.muscles) {
     if (muscle.drive.kind != MuscleDrive::Kind::channels) continue;
@@ -147,8 +156,10 @@ DriveMap drive_map(const data::Scene& scene) {
       if (std::find(channels.begin(), channels.end(), channel) == channels.end()) channels.push_back(channel);
     }
   }
-  return drive_map(scene, channels);
+  return channels;
 }
+
+DriveMap drive_map(const data::Scene& scene) { return drive_map(scene, named_channels(scene)); }
 
 Eigen::MatrixXd mix_excitations(const DriveMap& map, const Eigen::Ref<const Eigen::MatrixXd>& channels) {
   if (channels.rows() != map.weights.cols()) {

@@ -164,7 +164,7 @@ void MusclePath::check_consistency(double tolerance_m) {
   double given = 0.0, slope = 0.0;
   const auto worst = [&](double q, double r, double minus_dl_dq) {
     const double off = std::abs(r - minus_dl_dq);
-    if (off < consistency_.worst_disagreement_m) return;
+    if (off <= consistency_.worst_disagreement_m) return;
     consistency_.worst_disagreement_m = off;
     consistency_.worst_angle_rad = q;
     given = r;
