@@ -12,22 +12,11 @@
 #include "data/model/signal.hpp"
 #include "data/model/table.hpp"
 #include "pipelines/report/document.hpp"
+#include "pipelines/report/number.hpp"  // significant, fixed, quantity, percent, duration
 
 namespace brachium::pipelines::report {
 
 // ---------------------------------------------------------------- text and numbers
-
-/// `value` rounded to significant digits (1..17), trailing zeros kept as they are significant: 0.12, 1.50, 1.2e-07
-/// outside [1e-4, 1e7). Not a number: "-"; infinite: "∞". Minus is U+2212.
-std::string significant(double value, int digits = 4);
-/// `value` with a fixed number of decimals.
-std::string fixed(double value, int decimals);
-/// "1.50 N m", number and unit joined by a no-break space; unit "1" or "" gives the number alone.
-std::string quantity(double value, const std::string& unit, int digits = 4);
-/// 0.0421 -> "4.2 %".
-std::string percent(double fraction, int digits = 2);
-/// "0.8 s", "3 min 12 s", "2 h 05 min".
-std::string duration(double seconds);
 
 Cell make_text_cell(std::string text, Tone tone = Tone::plain);
 Cell make_number_cell(double value, int digits = 4, Tone tone = Tone::plain);

@@ -1,0 +1,84 @@
+#include "pipelines/report/build.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "data/model/units.hpp"
+
+namespace brachium::pipelines::report {
+
+Cell make_text_cell(std::string text, Tone tone) { return {.text = std::move(text), .tone = tone}; }
+
+Cell make_number_cell(double value, int digits, Tone tone) {
+  return {.text = significant(value, digits), .tone = tone, .numeric = true};
+}
+
+Tone tone_of(data::Severity severity) {
+  switch (severity) {
+    case data::Severity::error: return Tone::bad;
+    case data::Severity::warning: return Tone::warning;
+    case data::Severity::note: return Tone::plain;
+  }
+  return Tone::plain;
+}
+
+Paragraph make_finding(const data::Diagnostic& diagnostic) {
+  std::string text = diagnostic.message;
+  if (!diagnostic.help.empty()) text += "; " + diagnostic.help;
+  std::string source = diagnostic.code.empty() ? "" : "`" + diagnostic.code + "`";
+  if (diagnostic.where && !diagnostic.where->file.empty()) {
+    source += (source.empty() ? "" : ", ") + diagnostic.where->file;
+    if (diagnostic.where->line > 0) source += ":" + std::to_string(diagnostic.where->line);
+    if (diagnostic.where->line > 0 && diagnostic.where->column > 0) source += ":" + std::to_string(diagnostic.where->column);
+  }
+  if (!source.empty()) text += " (" + source + ")";
+  return {.text = std::move(text), .tone = tone_of(diagnostic.severity)};
+}
+
+Tone verdict_tone(const std::string& text) {
+  std::string lower = text;
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto starts_with_any = [&](std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(), [&](const char* word) { return lower.starts_with(word); });
+  };
+  if (starts_with_any({"not identified", "failed", "bad", "rejected", "did not converge"})) return Tone::bad;
+  if (starts_with_any({"at upper bound", "at lower bound", "at bound", "excluded", "correlated", "warning", "undriven"})) {
+    return Tone::warning;
+  }
+  if (starts_with_any({"identified", "passed", "converged"}) || lower == "ok" || lower == "good") return Tone::good;
+  return Tone::plain;
+}
+
+Tone threshold_tone(double value, double good, double bad) {
+  const bool falling = good < bad;  // small values are good
+  if (falling ? value <= good : value >= good) return Tone::good;
+  if (falling ? value < bad : value > bad) return Tone::warning;
+  return Tone::bad;
+}
+
+Series make_series(const data::Signal& signal, const std::string& label, const std::string& unit, Style style) {
+  const bool as_stored = unit.empty() || unit == signal.info.unit;
+  const double factor = as_stored ? 1.0 : data::convert(1.0, signal.info.unit, unit);  // units here have no offsets
+  Series series{.label = label, .style = style};
+  series.x.reserve(signal.samples.size());
+  series.y.reserve(signal.samples.size());
+  for (std::size_t i = 0; i < signal.samples.size(); ++i) {
+    series.x.push_back(signal.info.time_s(i));
+    series.y.push_back(as_stored ? signal.samples[i] : factor * signal.samples[i]);
+  }
+  return series;
+}
+
+Plot make_time_plot(const std::string& title, const std::string& quantity_name,
+                    std::span<const data::Signal* const> signals, const std::string& unit) {
+  Plot plot{.title = title, .x_label = "time [s]"};
+  for (const data::Signal* signal : signals) {
+    const std::string& label = signal->info.muscle.empty() ? signal->info.name : signal->info.muscle;
+    plot.series.push_back(make_series(*signal, label, unit));
+  }
+  const std::string shown = !unit.empty() || signals.empty() ? unit : signals.front()->info.unit;
+  plot.y_label = shown.empty() || shown == "1" ? quantity_name : quantity_name + " [" + shown + "]";
+  return plot;
+}
+
+}  // namespace brachium::pipelines::report
