@@ -10,10 +10,12 @@
 ///   /trials/<trial>/time_<n> time stamps [s], one dimension scale per distinct (rate, start, count) of the trial,
 ///                            attached to its signals
 ///
+/// The samples carry checksums (Fletcher-32), so that damaged bytes are found when they are read.
 /// Names with a `/`, empty names, "." and "..", and signal names of the form time_<n> are refused.
 /// Debian's HDF5 is not safe for threads: every call goes through one lock of the whole program.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -26,8 +28,8 @@ namespace brachium::io {
 /// A session file opened for reading: names, units and rates at once, samples when asked for.
 class SessionFile final : public data::SessionSource {
  public:
-  /// Throws InputError naming the file: "missing-file", "empty-file", "not-hdf5" (also truncated files),
-  /// "wrong-format", "wrong-version", "missing-attribute", "missing-dataset", "wrong-type".
+  /// Throws InputError naming the file: "missing-file", "empty-file", "not-hdf5", "damaged-file" (also cut-off files),
+  /// "wrong-format", "wrong-version", "missing-attribute", "missing-group", "wrong-type".
   explicit SessionFile(const std::filesystem::path& file);
   ~SessionFile() override;
   SessionFile(const SessionFile&) = delete;
@@ -35,7 +37,8 @@ class SessionFile final : public data::SessionSource {
 
   const data::SessionInfo& info() const override;
   using SessionSource::read;
-  /// Throws std::out_of_range past the end, InputError("unreadable-data") where the stored bytes are damaged.
+  /// Throws std::out_of_range past the end, InputError("damaged-data") where the stored bytes fail their checksum,
+  /// InputError("non-finite-sample") where a file of another program holds NaN or Inf.
   void read(std::size_t trial, std::size_t signal, std::size_t first, std::span<double> out) const override;
 
  private:
@@ -61,8 +64,10 @@ class SessionFileWriter : public data::SessionSink {
   void begin(const data::SessionInfo& session) override;
   /// Throws InputError("bad-name" | "duplicate-trial").
   void begin_trial(const data::TrialInfo& trial) override;
-  /// Throws InputError("bad-name" | "duplicate-signal" | "bad-signal" (rate not positive, no unit)).
+  /// Throws InputError("bad-name" | "duplicate-signal" | "bad-signal" (rate not positive, no samples, no unit)).
   void begin_signal(const std::string& trial, const data::SignalInfo& info) override;
+  /// Every sample once, in any order of chunks (in their order is fastest). Throws InputError("non-finite-sample")
+  /// naming signal and time, InputError("write-failed"), std::out_of_range past the end.
   void write_samples(const std::string& trial, const std::string& signal, std::size_t first,
                      std::span<const double> samples) override;
 
@@ -71,6 +76,11 @@ class SessionFileWriter : public data::SessionSink {
   void commit();
 
  protected:
+  /// The HDF5 identifier of the open file, for what a stage's output adds to it.
+  std::int64_t hdf5_id() const;
+  const std::filesystem::path& target() const;
+
+ private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -76,6 +76,8 @@ class TomlTable {
   double positive(const std::string& key, std::optional<double> fallback = std::nullopt);
   double non_negative(const std::string& key, std::optional<double> fallback = std::nullopt);
 
+  /// Marks a key as known without reading it (for values read through node()).
+  void know(const std::string& key) { known_.insert(key); }
   void error(const std::string& code, const std::string& message, const std::string& key = {}, const std::string& help = {});
   void warning(const std::string& code, const std::string& message, const std::string& key = {}, const std::string& help = {});
   data::SourceSpan span_of(const std::string& key) const;  ///< the key's value, or the table itself
