@@ -39,6 +39,11 @@ enum class StartUp {
                  ///< u are set to the mean of the first two (delayed) excitations, as CEINMS does
 };
 
+std::string to_string(ActivationForm form);
+std::string to_string(StartUp start_up);
+ActivationForm parse_activation_form(const std::string& name);  ///< throws InputError("unknown-activation-form")
+StartUp parse_start_up(const std::string& name);                ///< throws InputError("unknown-start-up")
+
 struct ActivationModel {
   ActivationForm form = ActivationForm::continuous;
   Nonlinearity nonlinearity = Nonlinearity::exponential;
@@ -64,10 +69,10 @@ struct ActivationTangents {
   std::span<double> shape;       ///< da/dA
 };
 
-/// Activation at the excitation's own samples. excitation and activation have equal length and may be the same
-/// memory. No memory is allocated. Nothing is clamped: an excitation above 1 gives an activation above 1.
+/// Activation at the excitation's own samples. excitation and activation have equal length and must not overlap.
+/// No memory is allocated. Nothing is clamped: an excitation above 1 gives an activation above 1.
 /// Throws data::InputError ("out-of-range") for parameters outside their domain: delay >= 0, time constants > 0
-/// (τ / dt not below 1e-4 nor above 1e7), |g| < 1, shape (see nonlinearity.hpp), rate > 0; ("rate-mismatch") for
+/// (between 1e-3 and 1e7 sample periods), |g| < 1, shape (see nonlinearity.hpp), rate > 0; ("rate-mismatch") for
 /// RecursionParameters used at another rate than their own; ("not-finite") for NaN or Inf samples.
 /// `recursive` with time constants uses g = -exp(-dt/τ).
 void activate(const ActivationModel& model, const data::ActivationParameters& parameters,
@@ -96,8 +101,9 @@ void neural_response(const ActivationModel& model, const RecursionParameters& pa
 /// g = -exp(-dt/τ) of a time constant, and back; the way back throws InputError for g >= 0 (no time constant).
 double recursion_coefficient(double time_constant_s, double rate_hz);
 double time_constant(double g, double rate_hz);
-/// Delay of the recursion with delay d compared with the continuous model of the same poles: d - dt to leading
-/// order; a continuous model of delay d + dt reads as recursion of delay d... see README. [s], may be negative.
+/// The recursion uses e_k where the exact solution uses e up to t_k only on average: with delay d it answers like the
+/// continuous model of the same poles with delay d - dt (and so needs d + dt to answer like one with delay d). The
+/// difference left is of second order in dt/τ. [s], may be negative.
 double equivalent_continuous_delay(double recursion_delay_s, double rate_hz);
 
 /// For use inside an ODE solver: state x = (x1, x2), x1' = (γ e(t - d) - x1)/τ1, x2' = (x1 - x2)/τ2, u = x2.
@@ -109,6 +115,8 @@ double first_order_rate(const data::ActivationParameters& parameters, double del
 
 /// Throws InputError listing every parameter outside its domain, with the muscle's name in the message.
 void check_parameters(const ActivationModel& model, const data::ActivationParameters& parameters,
+                      const std::string& muscle);
+void check_parameters(const ActivationModel& model, const RecursionParameters& parameters,
                       const std::string& muscle);
 
 }  // namespace brachium::emg

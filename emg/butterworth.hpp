@@ -83,7 +83,8 @@ struct FilterReport {
   std::string description;       ///< "low-pass Butterworth, effective order 4, zero lag, -3 dB at 6 Hz"
   int effective_order = 0;       ///< slope far outside the pass band [20 dB/decade], n x passes; notch: 2 x passes
   std::vector<double> edges_hz;  ///< every frequency where the gain crosses 1/sqrt(2) after all passes, ascending
-  double group_delay_s = 0.0;    ///< causal: at 0 Hz (low-pass) or where the gain is largest; zero lag: 0
+  double group_delay_s = 0.0;    ///< causal: inside the pass band, at delay_at_hz; zero lag: 0
+  double delay_at_hz = 0.0;      ///< low-pass and notch 0, band-pass the centre sqrt(low high), high-pass 2 low
   double transient_s = 0.0;      ///< time after which what is left of an edge's transient is below transient_level
 };
 inline constexpr double transient_level = 1e-3;
