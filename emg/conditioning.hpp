@@ -46,8 +46,9 @@ struct ConditioningChain {
   double group_delay_s = 0.0;            ///< causal: sum; zero lag: 0
   std::size_t edge_start_samples = 0;    ///< input samples at the start that transients reach
   std::size_t edge_end_samples = 0;      ///< ... at the end (causal: 0)
-  double gain_at_output_nyquist = 0.0;   ///< of the envelope filter at half the output rate; at most 0.01
+  double gain_at_output_nyquist = 0.0;   ///< of the filters at half a lower output rate; at most max_alias_gain
 };
+inline constexpr double max_alias_gain = 0.01;
 
 /// Throws data::InputError listing every mistake: "cutoff-above-nyquist", "out-of-range", "output-rate-too-low".
 ConditioningChain design_conditioning(const ConditioningOptions& options, double rate_hz);
@@ -76,8 +77,8 @@ OutputLayout condition(const ConditioningChain& chain, std::span<const std::span
                        ConditioningSteps* steps = nullptr, std::vector<double>* offsets = nullptr);
 
 /// Reads signals of one trial from a source, a group of channels at a time so that the group's samples stay within
-/// memory_budget_bytes (at least one channel), and writes envelopes (quantity excitation once normalised; here emg,
-/// unit as read) with what was done in their attributes. All signals must have one rate and one length
+/// memory_budget_bytes (at least one channel; at most 16, one full set of lanes), and writes envelopes under the same
+/// names (quantity emg, unit as read: they become excitations by normalisation) with what was done as attributes. All signals must have one rate and one length
 /// (InputError "rate-mismatch"). The trial must have been begun in the sink.
 struct StreamResult {
   ConditioningChain chain;
