@@ -10,6 +10,8 @@
 /// | F      | force_N            | N    | tension along the tendon (n)                        |
 /// | M      | moment_N_m         | N m  | r F (n), empty without moment arms                  |
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hill/differences.hpp"
 #include "hill/muscle_tendon.hpp"
 
 namespace brachium::hill {
@@ -81,10 +84,16 @@ struct Tangent {
 /// Working memory; reuse it over calls. Not to be shared between threads.
 class MuscleScratch {
  public:
-  std::vector<double>& array(std::size_t slot, std::size_t n);
+  static constexpr std::size_t kSlots = 40;
+  /// Slot `slot` with n elements, whose values are left over from earlier.
+  std::vector<double>& array(std::size_t slot, std::size_t n) {
+    arrays_[slot].resize(n);
+    return arrays_[slot];
+  }
+  SplineSlopes spline;
 
  private:
-  std::vector<std::vector<double>> arrays_;
+  std::array<std::vector<double>, kSlots> arrays_;
 };
 
 /// Runs the chain over all frames. The tangents are those of the discrete chain itself, differences in time

@@ -1,0 +1,130 @@
+// Speed of the forward chain, one core: activation, fibre kinematics, force, moment, in muscle-frames per second.
+// Seven muscles over 20 s at 200 Hz: lengths and moment arms of a slow curl, excitations of co-contracting muscles.
+// The activation part is the recursion and the exponential nonlinearity as an EMG-driven model has them.
+//
+//   ./hill_forward_bench --benchmark_min_time=1
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "hill/forward.hpp"
+
+namespace {
+
+using namespace brachium;
+
+struct Muscle {
+  data::MuscleParameters parameters;
+  double length_m, amplitude_m, arm_m;
+};
+
+// arm26 (OpenSim), lengths near the middle of the elbow's range.
+std::vector<Muscle> elbow() {
+  const auto make = [](double f0, double lo, double ls, double phi, double amplitude, double arm) {
+    data::MuscleParameters p;
+    p.max_isometric_force_N = f0;
+    p.optimal_fibre_length_m = lo;
+    p.tendon_slack_length_m = ls;
+    p.pennation_at_optimal_rad = phi;
+    return Muscle{p, lo * std::cos(phi) * 0.95 + ls * 1.005, amplitude, arm};
+  };
+  return {make(798.52, 0.134, 0.143, 0.20944, 0.012, -0.021), make(624.3, 0.1138, 0.098, 0.15708, 0.012, -0.021),
+          make(624.3, 0.1138, 0.0908, 0.15708, 0.012, -0.021), make(624.3, 0.1157, 0.2723, 0.0, -0.015, 0.038),
+          make(435.56, 0.1321, 0.1923, 0.0, -0.015, 0.038),    make(987.26, 0.0858, 0.0535, 0.0, -0.010, 0.024),
+          make(261.33, 0.1726, 0.133, 0.0, -0.030, 0.053)};
+}
+
+struct Trial {
+  static constexpr double kRate = 200.0;
+  static constexpr std::size_t kFrames = 4000;
+  std::vector<std::vector<double>> length, velocity, arm, excitation;
+
+  Trial() {
+    const std::vector<Muscle> muscles = elbow();
+    for (std::size_t m = 0; m < muscles.size(); ++m) {
+      std::vector<double> L(kFrames), V(kFrames), r(kFrames), e(kFrames);
+      for (std::size_t k = 0; k < kFrames; ++k) {
+        const double t = static_cast<double>(k) / kRate, w = 2.0 * std::numbers::pi * 0.4;
+        L[k] = muscles[m].length_m + muscles[m].amplitude_m * std::sin(w * t);
+        V[k] = muscles[m].amplitude_m * w * std::cos(w * t);
+        r[k] = muscles[m].arm_m * (1.0 + 0.1 * std::sin(w * t));
+        e[k] = 0.25 + 0.2 * std::sin(1.7 * w * t + 0.8 * static_cast<double>(m)) +
+               0.04 * std::sin(23.0 * t + static_cast<double>(m));
+      }
+      length.push_back(L);
+      velocity.push_back(V);
+      arm.push_back(r);
+      excitation.push_back(e);
+    }
+  }
+};
+
+void activate(const std::vector<double>& e, std::vector<double>& a) {
+  constexpr double c1 = -0.5, c2 = -0.5, shape = -1.5;
+  const double gain = (1.0 + c1) * (1.0 + c2), first = c1 + c2, second = c1 * c2, scale = 1.0 / (std::exp(shape) - 1.0);
+  double u1 = e[0], u2 = e[0];
+  for (std::size_t k = 0; k < e.size(); ++k) {
+    const double u = gain * e[k] - first * u1 - second * u2;
+    u2 = u1;
+    u1 = u;
+    a[k] = u;
+  }
+  for (double& x : a) x = (std::exp(shape * x) - 1.0) * scale;
+}
+
+void run(benchmark::State& state, const hill::MuscleModelOptions& options, std::size_t tangents) {
+  const Trial trial;
+  std::vector<hill::MuscleTendon> muscles;
+  for (const Muscle& m : elbow()) muscles.emplace_back("m" + std::to_string(muscles.size()), m.parameters, options);
+  hill::MuscleScratch scratch;
+  hill::MuscleTrace out;
+  std::vector<double> a(Trial::kFrames), moment(Trial::kFrames);
+  std::vector<std::vector<double>> derivative(tangents, std::vector<double>(Trial::kFrames));
+  for (auto _ : state) {
+    std::fill(moment.begin(), moment.end(), 0.0);
+    for (std::size_t m = 0; m < muscles.size(); ++m) {
+      activate(trial.excitation[m], a);
+      std::vector<hill::Tangent> wanted;
+      for (std::size_t i = 0; i < tangents; ++i) {
+        wanted.push_back({a, i == 0 ? std::optional(hill::MuscleParameter::tendon_slack_length) : std::nullopt, derivative[i]});
+      }
+      hill::forward(muscles[m], {Trial::kRate, trial.length[m], trial.velocity[m], trial.arm[m]}, a, scratch, out, wanted);
+      for (std::size_t k = 0; k < moment.size(); ++k) moment[k] += out.moment_N_m[k];
+    }
+    benchmark::DoNotOptimize(moment.data());
+  }
+  state.counters["muscle_frames_per_s"] = benchmark::Counter(
+      static_cast<double>(state.iterations() * muscles.size() * Trial::kFrames), benchmark::Counter::kIsRate);
+}
+
+[[maybe_unused]] const bool kRegistered = [] {
+  const auto add = [](const std::string& name, const hill::MuscleModelOptions& options, std::size_t tangents) {
+    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) { run(s, options, tangents); });
+  };
+  for (const std::string& set : hill::CurveSet::names()) {
+    hill::MuscleModelOptions options;
+    options.curves = hill::CurveSet::named(set);
+    add("rigid/" + set, options, 0);
+    options.tendon = hill::TendonKind::elastic;
+    add("elastic_zero_lag/" + set, options, 0);
+    options.velocity = hill::FibreVelocity::causal;
+    add("elastic_causal/" + set, options, 0);
+    options.velocity = hill::FibreVelocity::none;
+    add("elastic_static/" + set, options, 0);
+  }
+  for (const auto tendon : {hill::TendonKind::rigid, hill::TendonKind::elastic}) {
+    const std::string name = hill::to_string(tendon);
+    add("ceinms_" + name, hill::ceinms_options(tendon), 0);
+    hill::MuscleModelOptions options;
+    options.tendon = tendon;
+    add("tangents_4_" + name, options, 4);
+    add("ceinms_tangents_4_" + name, hill::ceinms_options(tendon), 4);
+  }
+  return true;
+}();
+
+}  // namespace
