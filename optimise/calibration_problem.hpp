@@ -16,7 +16,6 @@
 
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -85,10 +84,14 @@ struct CalibrationProblemOptions {
   ModelChoice model;
   std::vector<FreeQuantity> free;
   std::optional<double> scale_N_m;       ///< sigma; default: pooled SD of the reference about the set's mean
+  /// Independent samples a second that the data are believed to hold. Residuals are then weighted by
+  /// sqrt(independent_rate / sampling rate), so that priors count as many observations as they should; sigma is then
+  /// the expected error of the moment. Default: every sample counts fully.
+  std::optional<double> independent_rate_hz;
   std::map<std::string, double> channel_gains;  ///< gains of channels (start, or fixed); 1 where absent
   double edge_s = 0.0;                   ///< dropped at both ends of each trial's common span, beside what follows
   std::size_t decimate = 1;              ///< take every n-th sample of the reference as a residual
-  std::size_t threads = 1;
+  std::size_t threads = 1;               ///< muscles and trials in parallel (0: all cores); results do not depend on it
 };
 
 /// What was left out of a trial, and what was used.
@@ -114,7 +117,8 @@ class CalibrationProblem final : public LeastSquaresProblem {
  public:
   /// Throws InputError with every mistake found: "no-trials", "duplicate-trial", "unmapped-channel",
   /// "missing-moment", "zero-variance-moment" (the pooled reference moment does not vary and no scale is given),
-  /// "empty-window", "rate-mismatch", "angle-out-of-range", "bad-parameter", "nothing-free", "no-match".
+  /// "empty-window", "rate-mismatch", "angle-out-of-range", "bad-parameter", "bad-bounds", "no-match". With nothing set
+  /// free it is still good for prediction.
   CalibrationProblem(data::Scene scene, std::vector<CalibrationTrial> trials, CalibrationProblemOptions options);
   ~CalibrationProblem() override;
 
@@ -129,6 +133,7 @@ class CalibrationProblem final : public LeastSquaresProblem {
   const std::vector<std::string>& channels() const;  ///< that drive a muscle
   const std::vector<std::string>& undriven() const;
   double scale_N_m() const;                          ///< sigma
+  double residual_weight(std::size_t trial) const;   ///< r = weight (M - M_reference) [1 / (N m)]
   std::vector<ResidualBlock> blocks() const;
   std::vector<double> times_s(std::size_t trial) const;
   std::vector<double> reference_N_m(std::size_t trial) const;  ///< at times_s
@@ -137,10 +142,14 @@ class CalibrationProblem final : public LeastSquaresProblem {
 
   /// Muscles (with fixed parameters where nothing is free), gains and model at x; no verdicts.
   data::Subject subject(const Eigen::VectorXd& x) const;
-  /// Indices of the strength parameters, if every driven muscle's strength is free: the moment is then linear in them.
+  /// Indices of the strength parameters: the moment is linear in them.
   std::vector<std::size_t> strength_parameters() const;
-  /// The same trials with other excitations (same channels, same grids): for studies of errors in the excitation.
-  CalibrationProblem with_excitations(const std::vector<std::vector<data::Signal>>& excitations) const;
+  /// The same trials with other excitations on the same grids: for studies of errors in the excitation.
+  /// samples[trial][channel], channels in the order of channels().
+  using Samples = std::vector<std::vector<std::vector<double>>>;
+  const Samples& excitations() const;
+  CalibrationProblem with_excitations(Samples samples) const;
+  double excitation_rate_hz(std::size_t trial) const;
   static EvaluationCount count(const Evaluator& evaluator);  ///< of an evaluator that this class made
 
   struct Impl;

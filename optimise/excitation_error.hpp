@@ -32,8 +32,11 @@ struct ExcitationNoise {
 };
 
 /// c of the linear envelope (full-wave rectified, zero-lag 4th-order Butterworth low-pass with -3 dB at cutoff_hz) of
-/// Gaussian noise with a flat spectrum between the two edges: from the autocovariance of |x|,
-/// (2/pi) (rho asin rho + sqrt(1 - rho^2) - 1), integrated against the filter. About 0.09 for 20-450 Hz at 6 Hz.
+/// Gaussian noise whose power spectrum is given on equally spaced frequencies: the autocovariance of |x|,
+/// (2/pi) (rho asin rho + sqrt(1 - rho^2) - 1), integrated against the filter's autocorrelation.
+double envelope_coefficient_of_variation(const std::vector<double>& frequency_hz, const std::vector<double>& power,
+                                         double cutoff_hz);
+/// The same of a flat spectrum between two edges.
 double envelope_coefficient_of_variation(double lower_edge_hz, double upper_edge_hz, double cutoff_hz);
 
 /// Stationary Gaussian noise of unit variance with the spectrum of that low-pass; `count` samples at rate_hz.

@@ -27,10 +27,4 @@ struct ModelChoice {
   static ModelChoice from_map(const std::map<std::string, std::string>& map);
 };
 
-/// "continuous" | "recursive" | "first_order"; "steady_state" | "rest" | "ceinms". Throw InputError with the nearest.
-emg::ActivationForm parse_activation_form(const std::string& name);
-emg::StartUp parse_start_up(const std::string& name);
-std::string to_string(emg::ActivationForm form);
-std::string to_string(emg::StartUp start_up);
-
 }  // namespace brachium::optimise
