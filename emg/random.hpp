@@ -12,7 +12,7 @@ class Random {
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
 
   std::uint64_t bits();
-  double uniform();  ///< in (0, 1), multiples of 2^-53 shifted by half a step: never 0, never 1
+  double uniform();  ///< (k + 1/2) 2^-52, k < 2^52: never 0, never 1
   double normal();   ///< standard normal, by inversion
 
  private:
@@ -22,5 +22,8 @@ class Random {
 /// Quantile of the standard normal distribution, p in (0, 1): Wichura 1988, algorithm AS 241 (PPND16),
 /// doi:10.2307/2347330; relative accuracy about 1e-16. Uses only +, -, *, / and sqrt.
 double normal_quantile(double p);
+
+/// ln x, x > 0 normal, to about 1 ulp, by +, -, *, / alone.
+double portable_log(double x);
 
 }  // namespace brachium::emg

@@ -2,15 +2,18 @@
 /// Raw surface EMG made from a known excitation: amplitude-modulated, band-limited Gaussian noise, and everything that
 /// spoils real recordings, each by name and amount. The clean part and the truth are kept apart.
 ///
-/// x(t) = s(e(t)) n(t) + sensor noise + hum + ECG + motion + offset + drift, then dropouts, then clipping.
+/// x(t) = s(e(t)) n(t) + sensor noise + hum + ECG + motion + offset + drift, then clipping, then dropouts.
 /// n is unit-variance Gaussian noise of the power spectrum
 ///     P(f) ~ f_h^4 f^2 / ((f^2 + f_l^2)(f^2 + f_h^2)^2)      (Shwedyk et al. 1977, doi:10.1109/TBME.1977.326175;
 ///                                                             Stulen & De Luca 1981, doi:10.1109/TBME.1981.324738)
-/// limited to [band_low_hz, band_high_hz], and s(e) = amplitude_V e, the amplitude-modulation model of
-/// Hogan & Mann (1980, doi:10.1109/TBME.1980.326652).
+/// limited to [band_low_hz, band_high_hz] (Butterworth, order 2, one pass) and s(e) = amplitude_V e, the amplitude
+/// modulation of Hogan & Mann (1980, doi:10.1109/TBME.1980.326652). The ECG is a sum of Gaussians for Q, R, S and T
+/// (after McSharry et al. 2003, doi:10.1109/TBME.2003.808805, heights and widths our own), its intervals vary by 3 %.
+/// Every disturbance has a random sequence of its own: switching one on does not change the others.
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,8 +26,7 @@ struct SyntheticEmgOptions {
   double spectrum_high_hz = 120.0;   ///< f_h
   double band_low_hz = 20.0;         ///< high-pass edge of the electrode and amplifier
   double band_high_hz = 450.0;       ///< low-pass edge; below Nyquist
-  double snr_db = 0.0;               ///< clean EMG at excitation 1 against white sensor noise; used if sensor_noise
-  bool sensor_noise = false;
+  std::optional<double> snr_db;      ///< power of the clean EMG at excitation 1 over white sensor noise; none: no noise
   double hum_hz = 50.0;              ///< line frequency
   double hum_V = 0.0;                ///< amplitude of the fundamental; harmonic k (odd ones 3, 5, ...) has 1/k of it
   int hum_harmonics = 3;             ///< number of sines, the fundamental among them
