@@ -89,6 +89,14 @@ class Reader {
       if (file_exists(resolve(*scene), scene_where_, "scene")) definition_.scene_file = resolve(*scene);
       names_scene_ = true;
     }
+    if (auto given = pipeline->table("session_settings")) {
+      // What the command line gave to the session description comes after what the definition gives.
+      for (const auto& [key, value] : given->node().members) {
+        std::string text = node_text(value);
+        if (key == "recordings" && value.kind == TomlNode::Kind::text) text = node_text(TomlNode::of(resolve(value.text).string()));
+        definition_.session_overrides.emplace(key, std::move(text));
+      }
+    }
     if (const auto threads = pipeline->integer("threads")) {
       if (*threads < 0 || *threads > 1024) pipeline->error("out-of-range", "`threads` must lie in 0 (all cores) to 1024", "threads");
       definition_.threads = static_cast<std::size_t>(std::clamp<std::int64_t>(*threads, 0, 1024));
@@ -350,6 +358,9 @@ std::string resolved_text(const Definition& definition) {
   if (!definition.session.empty()) pipeline.member("session") = TomlNode::of(definition.session.string());
   if (!definition.scene_file.empty()) pipeline.member("scene") = TomlNode::of(definition.scene_file.string());
   pipeline.member("threads") = TomlNode::of(static_cast<std::int64_t>(definition.threads));
+  for (const auto& [key, value] : definition.session_overrides) {
+    pipeline.member("session_settings").member(key) = io::parse_toml_value(value, {});
+  }
   TomlNode list;
   list.kind = TomlNode::Kind::array;
   for (const StageDefinition& stage : definition.stages) {
@@ -389,9 +400,6 @@ std::string resolved_text(const Definition& definition) {
   if (!expectations.items.empty()) root.member("expect") = std::move(expectations);
   std::string text = "# The definition as it was run: every option written out, paths absolute.\n";
   for (const std::string& setting : definition.settings) text += "# --set " + setting + "\n";
-  for (const auto& [key, value] : definition.session_overrides) {
-    text += fmt::format("# given to the session description: {} = {}\n", key, value);
-  }
   return text + "\n" + io::write_toml(root);
 }
 

@@ -76,7 +76,7 @@ class Applier {
     const std::vector<std::string> path = split(setting.substr(0, equals));
     TomlNode value = io::parse_toml_value(setting.substr(equals + 1), where.file);
     if (path.size() == 1) {
-      set_plain(path[0], std::move(value), setting.substr(equals + 1));
+      set_plain(path[0], value, setting.substr(equals + 1));
     } else if (path[0] == "pipeline") {
       if ((path[1] == "session" || path[1] == "scene") && value.kind == TomlNode::Kind::text) {
         value.text = absolute_text(value.text, current_);
@@ -141,24 +141,24 @@ class Applier {
     return session && session->kind == TomlNode::Kind::text && session->text.ends_with(".toml");
   }
 
-  void set_plain(const std::string& key, TomlNode value, const std::string& text) {
-    const data::SourceSpan where = value.where;
-    const bool declared = applied_.variables.find(key) || unset_.contains(key);
+  void set_plain(const std::string& key, const TomlNode& value, const std::string& text) {
     if (key == "expect" && value.kind == TomlNode::Kind::boolean) {
       if (!value.boolean) std::erase_if(root_.members, [](const auto& member) { return member.first == "expect"; });
       return;
     }
+    TomlNode absolute = value;
+    if (value.kind == TomlNode::Kind::text) absolute.text = absolute_text(value.text, current_);
+    const bool declared = applied_.variables.find(key) || unset_.contains(key);
     if (declared) {
       const bool is_path = std::find(paths_.begin(), paths_.end(), key) != paths_.end();
-      if (is_path && value.kind == TomlNode::Kind::text) value.text = absolute_text(value.text, current_);
-      applied_.variables.member(key) = std::move(value);
+      applied_.variables.member(key) = is_path ? absolute : value;
       unset_.erase(key);
     }
     // The folder of recordings belongs to the session description, whether or not the pipeline names it as well.
     if (reads_description() && (key == "recordings" || !declared)) {
-      applied_.session_overrides[key] = text;
+      applied_.session_overrides[key] = key == "recordings" ? node_text(absolute) : text;
     } else if (!declared) {
-      unknown(key, where);
+      unknown(key, value.where);
     }
   }
 

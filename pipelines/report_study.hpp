@@ -1,0 +1,14 @@
+#pragma once
+/// What a study is about, for its report: the recordings and the scene with the sources and assumptions of its numbers.
+
+#include "pipelines/assemble_report.hpp"
+
+namespace brachium::pipelines {
+
+/// Subject, number of trials, date.
+std::string study_subtitle(const RunResult& result, const RunData& data);
+
+/// Chapters "Recordings" and "Scene", as far as the pipeline has them.
+void add_study_sections(const Definition& definition, const RunData& data, report::Document& document);
+
+}  // namespace brachium::pipelines
