@@ -49,8 +49,8 @@ Axis make_axis(const Extent& extent, bool log, double margin, std::optional<doub
       const double span = axis.upper - axis.lower;
       const bool constant = !(span > 1e-12 * size);
       const double room = constant ? (size > 0.0 ? 0.1 * size : 1.0) : margin * span;
-      axis.lower -= room;
-      axis.upper += room;
+      axis.lower = axis.lower >= 0.0 ? std::max(0.0, axis.lower - room) : axis.lower - room;
+      axis.upper = axis.upper <= 0.0 && !constant ? std::min(0.0, axis.upper + room) : axis.upper + room;
     }
   }
   if (lower && can_show(*lower, log)) axis.lower = *lower;

@@ -35,7 +35,7 @@ class Extent {
 };
 
 /// An axis around an extent, with `margin` of its length free on both sides; bounds that are given stand as they are.
-/// A constant gets room on both sides; nothing at all gives [0, 1], or [1, 10] if log.
+/// What is nowhere negative gets no negative room. A constant gets room on both sides; nothing at all gives [0, 1], or [1, 10] if log.
 Axis make_axis(const Extent& extent, bool log, double margin, std::optional<double> lower, std::optional<double> upper);
 
 /// Extents of what one panel draws: series (with the baseline of bars and areas), levels.

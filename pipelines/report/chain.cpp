@@ -19,6 +19,7 @@ constexpr double kBoxHeight = 64.0;
 constexpr double kInputHeight = 34.0;
 constexpr double kMargin = 6.0;
 constexpr double kArrow = 7.0;
+constexpr double kLeastScale = 0.8;  // on narrow screens the picture scrolls rather than shrink further
 
 struct At {
   double x, y;
@@ -57,9 +58,9 @@ class ChainPicture {
   std::string draw() const {
     const At size = extent();
     std::string out = fmt::format(
-        "<div class=\"scroll\"><svg class=\"chain\" role=\"img\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">"
-        "<title>The chain of stages</title><desc>{2}</desc>",
-        pixels(size.x), pixels(size.y), escape(description()));
+        "<div class=\"scroll\"><svg class=\"chain\" role=\"img\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+        "style=\"--w:{2}px\"><title>The chain of stages</title><desc>{3}</desc>",
+        pixels(size.x), pixels(size.y), pixels(kLeastScale * size.x), escape(description()));
     for (const ChainEdge& edge : layout_.edges) out += arrow(edge);
     for (const ChainBox& box : layout_.boxes) out += draw_box(box);
     return out + "</svg></div>\n";

@@ -15,6 +15,7 @@ struct Point {
   int layer = 0;
   double position = 0.0;
   double room = 1.0;  // across the layer: a bend needs less than a box
+  bool is_bend() const { return room < 1.0; }
   std::vector<std::size_t> before{}, after{};  // neighbours in the layers before and after it
 };
 
@@ -26,7 +27,7 @@ class Graph {
   void write_back(ChainLayout& layout) const;
 
  private:
-  double barycentre(const std::vector<std::size_t>& neighbours, double otherwise) const;
+  double barycentre(std::size_t i, bool before, bool after) const;
   void sort_layer(std::vector<std::size_t>& layer, bool downwards);
   void separate(const std::vector<std::size_t>& layer, const std::vector<double>& wanted);
 
@@ -56,18 +57,26 @@ Graph::Graph(ChainLayout& layout) : layers_(static_cast<std::size_t>(layout.laye
   }
 }
 
-double Graph::barycentre(const std::vector<std::size_t>& neighbours, double otherwise) const {
-  if (neighbours.empty()) return otherwise;
+/// Weighted mean position of the neighbours; long arrows pull hardest so that they run straight.
+double Graph::barycentre(std::size_t i, bool before, bool after) const {
   double sum = 0.0;
-  for (const std::size_t i : neighbours) sum += points_[i].position;
-  return sum / static_cast<double>(neighbours.size());
+  double weights = 0.0;
+  const auto add = [&](const std::vector<std::size_t>& neighbours) {
+    for (const std::size_t k : neighbours) {
+      const int bends = static_cast<int>(points_[i].is_bend()) + static_cast<int>(points_[k].is_bend());
+      const double weight = bends == 2 ? 8.0 : bends == 1 ? 2.0 : 1.0;
+      sum += weight * points_[k].position;
+      weights += weight;
+    }
+  };
+  if (before) add(points_[i].before);
+  if (after) add(points_[i].after);
+  return weights > 0.0 ? sum / weights : points_[i].position;
 }
 
 void Graph::sort_layer(std::vector<std::size_t>& layer, bool downwards) {
   std::map<std::size_t, double> key;
-  for (const std::size_t i : layer) {
-    key[i] = barycentre(downwards ? points_[i].before : points_[i].after, points_[i].position);
-  }
+  for (const std::size_t i : layer) key[i] = barycentre(i, downwards, !downwards);
   std::stable_sort(layer.begin(), layer.end(), [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
   for (std::size_t k = 0; k < layer.size(); ++k) points_[layer[k]].position = static_cast<double>(k);
 }
@@ -110,17 +119,14 @@ void Graph::separate(const std::vector<std::size_t>& layer, const std::vector<do
 void Graph::place() {
   const auto pass = [&](const std::vector<std::size_t>& layer, bool before, bool after) {
     std::vector<double> wanted;
-    for (const std::size_t i : layer) {
-      std::vector<std::size_t> neighbours;
-      if (before) neighbours = points_[i].before;
-      if (after) neighbours.insert(neighbours.end(), points_[i].after.begin(), points_[i].after.end());
-      wanted.push_back(barycentre(neighbours, points_[i].position));
-    }
+    for (const std::size_t i : layer) wanted.push_back(barycentre(i, before, after));
     separate(layer, wanted);
   };
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const auto& layer : layers_) pass(layer, true, false);
     for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) pass(*layer, false, true);
+  }
+  for (int sweep = 0; sweep < 2 * kSweeps; ++sweep) {
     for (const auto& layer : layers_) pass(layer, true, true);
   }
 }

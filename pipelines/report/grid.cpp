@@ -8,8 +8,11 @@
 namespace brachium::pipelines::report {
 namespace {
 
+constexpr std::size_t kLongText = 24;
+
 std::string class_attribute(const Cell& cell) {
-  std::string classes = cell.numeric ? "n" : "";
+  // A long text must not be squeezed into a column of single words when the table scrolls.
+  std::string classes = cell.numeric ? "n" : cell.text.size() > kLongText ? "w" : "";
   if (cell.tone != Tone::plain) classes += (classes.empty() ? "" : " ") + tone_class(cell.tone);
   return classes.empty() ? "" : " class=\"" + classes + "\"";
 }

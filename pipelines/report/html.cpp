@@ -157,12 +157,8 @@ void Page::block(const PlotRow& row, int) {
     return draw_legend(plot) == legend;
   });
   frame.legend = !common;
+  out_ += "<div class=\"row\" style=\"--w:" + (n == 1 ? "100%" : pixels(least) + "px") + "\">\n";
   if (common) out_ += "<div class=\"rowlegend\">" + legend + "</div>\n";
-  out_ += "<div class=\"row\"";
-  if (n > 1) {
-    out_ += " style=\"grid-template-columns:repeat(auto-fill,minmax(min(100%," + pixels(least) + "px),1fr))\"";
-  }
-  out_ += ">\n";
   for (const Plot& plot : row.plots) out_ += draw_plot(plot, frame);
   out_ += "</div>\n";
 }

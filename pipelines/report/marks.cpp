@@ -16,8 +16,7 @@ constexpr double kSize = 10.5;         // [px] of marker and level names
 constexpr double kLevelSpacing = 12.0; // [px] between names of neighbouring levels
 constexpr double kWidestLevel = 150.0; // [px]
 
-/// A plot may be shown narrower than the page thinks; names are kept apart for this share of the likely width.
-constexpr double kNarrowing = 0.65;
+constexpr double kNarrowest = 400.0;   // [px] a plot may be shown narrower than the page thinks: names are kept apart here
 
 }  // namespace
 
@@ -62,11 +61,11 @@ MarkerLabels place_marker_labels(const std::vector<Marker>& markers, const Axis&
     labels.places.push_back({marker.label, at, 0, marker.tone});
   }
   std::stable_sort(labels.places.begin(), labels.places.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  const double narrow = std::min(width_px, kNarrowest);
   std::vector<double> lane_end;  // [px] right end of the last name of each line
   for (MarkerLabels::Place& place : labels.places) {
     const double width = text_width(place.text, kSize);
-    const double start = std::clamp(kNarrowing * width_px * place.x - width / 2.0, 0.0,
-                                    std::max(0.0, kNarrowing * width_px - width));
+    const double start = std::clamp(narrow * place.x - width / 2.0, 0.0, std::max(0.0, narrow - width));
     const auto free = std::find_if(lane_end.begin(), lane_end.end(), [&](double end) { return end + 6.0 <= start; });
     place.lane = static_cast<int>(free - lane_end.begin());
     if (free == lane_end.end()) lane_end.push_back(0.0);

@@ -15,13 +15,15 @@
 namespace brachium::pipelines::report {
 namespace {
 
-constexpr double kYLabelHeight = 18.0;  // [px] line above a panel that names its y axis
+constexpr double kYLabelHeight = 22.0;  // [px] line above a panel that names its y axis
 constexpr double kLaneHeight = 13.0;    // [px] line of marker labels
 constexpr double kTickHeight = 18.0;    // [px] numbers under the x axis
 constexpr double kTickSize = 11.0;      // [px] lettering of numbers
 constexpr double kXLabelHeight = 18.0;
 constexpr double kPanelGap = 8.0;
 constexpr double kRightPadding = 14.0;  // half of the last number of the x axis
+constexpr double kNarrowest = 360.0;    // [px] width of a plot on a small screen
+constexpr int kTypicalIntervals = 6;    // of an x axis
 constexpr double kSquare = 300.0;       // [px] least side of a plot with equal axes
 
 void check(const Plot& plot) {
@@ -34,7 +36,12 @@ void check(const Plot& plot) {
   }
 }
 
-int y_intervals(double height) { return std::clamp(static_cast<int>(height / 40.0), 2, 8); }
+int y_intervals(double height) { return std::clamp(static_cast<int>(height / 26.0), 3, 7); }
+
+/// Equal axes carry the same numbers.
+int x_intervals(const Plot& plot, double width) {
+  return plot.equal_axes ? y_intervals(width) : std::clamp(static_cast<int>(width / 85.0), 3, 8);
+}
 
 double side(const Plot& plot) { return plot.equal_axes ? std::max(plot.height_px, kSquare) : plot.height_px; }
 
@@ -72,7 +79,14 @@ Axis shared_x(const Plot& plot) {
     return make_axis(extent, false, 0.0, plot.x_min.value_or(extent.lower() - room),
                      plot.x_max.value_or(extent.upper() + room));
   }
-  return make_axis(extent, plot.log_x, x_margin(plot), plot.x_min, plot.x_max);
+  Axis axis = make_axis(extent, plot.log_x, x_margin(plot), plot.x_min, plot.x_max);
+  if (!plot.log_x && !plot.x_max && !extent.empty()) {
+    // A recording that ends a sample before a round number still shows that number.
+    const double step = nice_step(axis.upper - axis.lower, kTypicalIntervals);
+    const double round_end = std::ceil(axis.upper / step) * step;
+    if (round_end - axis.upper < 0.01 * (axis.upper - axis.lower)) axis.upper = round_end;
+  }
+  return axis;
 }
 
 Axis y_axis(const Plot& plot) { return make_axis(y_extent(plot), plot.log_y, 0.05, plot.y_min, plot.y_max); }
@@ -85,17 +99,33 @@ void make_equal(Axis& x, Axis& y) {
 
 std::string percent_of(double fraction) { return fixed(100.0 * fraction, 2) + "%"; }
 
+/// Names of categories that do not fit beside each other are turned and need more height [px], else 0.
+double categories_height(const Plot& plot, double width) {
+  double widest = 0.0;
+  for (const std::string& name : plot.categories) widest = std::max(widest, text_width(name, kTickSize));
+  const double slot = std::min(width, kNarrowest) / std::max(1.0, static_cast<double>(plot.categories.size()));
+  return widest + 4.0 > slot ? 0.6 * widest : 0.0;  // sine of the angle
+}
+
 std::string x_ticks(const Plot& plot, const Axis& x, double width, double top) {
-  const int intervals = std::clamp(static_cast<int>(width / 95.0), 2, 8);
   std::string out;
   const auto text = [&](double value, const std::string& label) {
     out += "<text class=\"t\" text-anchor=\"middle\" x=\"" + percent_of(x.position(value)) + "\" y=\"" +
            pixels(top + 14.0) + "\">" + escape(label) + "</text>";
   };
+  // A text that is turned needs a place of its own to turn about.
+  const auto slanted = [&](double value, const std::string& label) {
+    out += "<svg x=\"" + percent_of(x.position(value)) + "\" y=\"" + pixels(top + 12.0) +
+           "\" overflow=\"visible\"><text class=\"t\" text-anchor=\"end\" transform=\"rotate(-35)\" x=\"3\">" +
+           escape(label) + "</text></svg>";
+  };
   if (plot.categories.empty()) {
-    for (const Tick& tick : x.ticks(intervals)) text(tick.value, tick.label);
-  } else {
-    for (std::size_t k = 0; k < plot.categories.size(); ++k) text(static_cast<double>(k), plot.categories[k]);
+    for (const Tick& tick : x.ticks(x_intervals(plot, width))) text(tick.value, tick.label);
+  }
+  const bool crowded = categories_height(plot, width) > 0.0;
+  for (std::size_t k = 0; k < plot.categories.size(); ++k) {
+    const double at = static_cast<double>(k);
+    crowded ? slanted(at, plot.categories[k]) : text(at, plot.categories[k]);
   }
   return out;
 }
@@ -108,7 +138,7 @@ std::string draw_panel(const Plot& plot, const Plot& panel_plot, const Panel& pa
   std::string grid;
   std::string numbers;
   if (plot.categories.empty()) {
-    for (const Tick& tick : panel.x.ticks(std::clamp(static_cast<int>(w / 95.0), 2, 8))) {
+    for (const Tick& tick : panel.x.ticks(x_intervals(plot, w))) {
       grid += "M" + pixels(panel.px(tick.value)) + " 0v" + pixels(h);
     }
   }
@@ -210,9 +240,10 @@ std::string draw_plot(const Plot& plot, const PlotFrame& frame) {
   double top = 0.0;
   std::size_t drawn = 0;
   const auto add_panel = [&](const Plot& panel_plot, const Axis& y, bool first) {
-    if (!panel_plot.y_label.empty()) {
-      body += "<text class=\"yl\" x=\"" + pixels(-left) + "\" y=\"" + pixels(top + 11.0) + "\">" +
-              escape(typeset_label(panel_plot.y_label)) + "</text>";
+    const std::string y_label = typeset_label(panel_plot.y_label);
+    if (!y_label.empty()) {
+      body += "<text class=\"yl\" x=\"" + pixels(-left) + "\" y=\"" + pixels(top + 11.0) + "\">" + escape(y_label) +
+              "</text>";
       top += kYLabelHeight;
     } else {
       top += 8.0;  // half of the highest number
@@ -232,7 +263,7 @@ std::string draw_plot(const Plot& plot, const PlotFrame& frame) {
     add_panel(panel, y_axis(panel), false);
   }
   body += x_ticks(plot, x, width, top);
-  top += kTickHeight;
+  top += kTickHeight + categories_height(plot, width);
   if (!plot.x_label.empty()) {
     body += "<text class=\"xl\" text-anchor=\"middle\" x=\"50%\" y=\"" + pixels(top + 12.0) + "\">" +
             escape(typeset_label(plot.x_label)) + "</text>";

@@ -11,6 +11,8 @@
 namespace brachium::pipelines::report {
 namespace {
 
+constexpr double kDense = 3.0;            // samples kept for each pixel column
+constexpr std::size_t kManyPoints = 500;  // drawn smaller
 constexpr double kFar = 1e5;  // [px] what lies this far outside the panel may be drawn anywhere outside
 
 double bounded(double px) { return std::clamp(px, -kFar, kFar); }  // NaN stays NaN
@@ -32,16 +34,24 @@ std::string element(const std::string& classes, const std::string& d) {
   return d.empty() ? "" : "<path class=\"" + classes + "\" d=\"" + d + "\"/>";
 }
 
-std::string line(const Pixels& at, bool step) {
+/// More than the eye can follow: a recording that fills its columns. Drawn lighter, so that what lies on it is seen.
+bool is_dense(const std::vector<std::size_t>& kept, const Panel& panel) {
+  return static_cast<double>(kept.size()) > kDense * panel.width_px;
+}
+
+std::string line(const Pixels& at, const std::vector<std::size_t>& kept, bool step) {
   PathWriter path;
   std::size_t run = 0;  // samples since the last break
   double last_x = 0.0;
   double last_y = 0.0;
   const auto end_run = [&] {
-    if (run == 1) path.dot(last_x, last_y);  // a sample between two gaps
+    if (run == 1) {  // a sample between two gaps
+      path.move_to(last_x - 1.0, last_y);
+      path.line_to(last_x + 1.0, last_y);
+    }
     run = 0;
   };
-  for (const std::size_t i : thin_line(at.x, at.y)) {
+  for (const std::size_t i : kept) {
     const double x = at.x[i];
     const double y = at.y[i];
     if (std::isnan(x) || std::isnan(y)) {
@@ -141,10 +151,14 @@ std::string draw_series(const Series& series, int colour, const Panel& panel, in
   const std::string classes = colour_class(colour);
   const Pixels at = to_pixels(series.x, series.y, panel);
   switch (series.style) {
-    case Style::line: return element("l " + classes, line(at, false));
-    case Style::dashed: return element("l d " + classes, line(at, false));
-    case Style::step: return element("l " + classes, line(at, true));
-    case Style::points: return element("p " + classes, points(at));
+    case Style::line:
+    case Style::dashed:
+    case Style::step: {
+      const std::vector<std::size_t> kept = thin_line(at.x, at.y);
+      const std::string kind = series.style == Style::dashed ? "l d " : is_dense(kept, panel) ? "l dense " : "l ";
+      return element(kind + classes, line(at, kept, series.style == Style::step));
+    }
+    case Style::points: return element((at.x.size() > kManyPoints ? "p many " : "p ") + classes, points(at));
     case Style::bars: return element("a " + classes, bars(at, panel, bar_slot, bar_slots));
     case Style::area: {
       std::vector<double> lower;

@@ -47,12 +47,14 @@ th,td{padding:5px 12px;text-align:left;vertical-align:top;border-bottom:1px soli
 thead th{font-weight:600;color:var(--soft);border-bottom:2px solid var(--line);vertical-align:bottom}
 tbody th{font-weight:500}
 tbody tr:hover{background:var(--raised)}
+td code,th code{white-space:nowrap}
+.w{min-width:15em}
 .n{text-align:right;white-space:nowrap}
 td.good,th.good{color:var(--good)}td.warning,tbody th.warning{color:var(--warning);background:var(--warning-bg);font-weight:600}
 td.bad,tbody th.bad{color:var(--bad);background:var(--bad-bg);font-weight:700}
 .prov th{width:1%;white-space:nowrap;color:var(--soft)}.prov td{overflow-wrap:anywhere}
-.row{display:grid;gap:18px 26px;margin:14px 0;align-items:start}
-.rowlegend{margin:14px 0 -6px}
+.row{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,var(--w)),1fr));gap:18px 26px;margin:14px 0;align-items:start}
+.rowlegend{grid-column:1/-1;margin-bottom:-12px}
 figure{margin:0;min-width:0}
 figcaption{font-weight:600;font-size:14.5px;margin:0 0 2px}
 .legend{list-style:none;display:flex;flex-wrap:wrap;gap:2px 18px;margin:0 0 4px;padding:0;font-size:12.5px;line-height:1.5;color:var(--ink)}
@@ -66,9 +68,9 @@ svg.plot text.good{fill:var(--good)}svg.plot text.warning{fill:var(--warning)}sv
 .panel *,.k *{vector-effect:non-scaling-stroke}
 .ground{fill:none;pointer-events:all}
 .grid{stroke:var(--grid);fill:none}.zero{stroke:var(--axis);fill:none;stroke-width:.8}.frame{stroke:var(--axis);fill:none;stroke-width:1.6}
-.l{fill:none;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}
+.l{fill:none;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}.l.dense{stroke-width:1;stroke-opacity:.6}
 .d{stroke-dasharray:7 4;stroke-linecap:butt}.r{stroke-dasharray:2 3}
-.p{fill:none;stroke-width:4;stroke-linecap:round;stroke-opacity:.6}.a{fill-opacity:.75}.b{fill-opacity:.25}.a,.b{stroke-width:.6}
+.p{fill:none;stroke-width:4;stroke-linecap:round;stroke-opacity:.6}.p.many{stroke-width:2.6}.a{fill-opacity:.75}.b{fill-opacity:.25}.a,.b{stroke-width:.6}
 .c0{stroke:var(--c0)}.c1{stroke:var(--c1)}.c2{stroke:var(--c2)}.c3{stroke:var(--c3)}.c4{stroke:var(--c4)}.c5{stroke:var(--c5)}.c6{stroke:var(--c6)}.c7{stroke:var(--c7)}
 .c0.a,.c0.b{fill:var(--c0)}.c1.a,.c1.b{fill:var(--c1)}.c2.a,.c2.b{fill:var(--c2)}.c3.a,.c3.b{fill:var(--c3)}
 .c4.a,.c4.b{fill:var(--c4)}.c5.a,.c5.b{fill:var(--c5)}.c6.a,.c6.b{fill:var(--c6)}.c7.a,.c7.b{fill:var(--c7)}
@@ -76,7 +78,7 @@ svg.plot text.good{fill:var(--good)}svg.plot text.warning{fill:var(--warning)}sv
 .mark.good{stroke:var(--good)}.mark.warning{stroke:var(--warning)}.mark.bad{stroke:var(--bad)}
 .span{fill:var(--axis);fill-opacity:.16;stroke:none}
 .span.good{fill:var(--good)}.span.warning{fill:var(--warning)}.span.bad{fill:var(--bad)}
-svg.chain{display:block;max-width:100%;height:auto;min-width:min(100%,560px)}
+svg.chain{display:block;margin:0 auto;max-width:100%;height:auto;min-width:var(--w)}
 .box rect{fill:var(--raised);stroke:var(--axis);stroke-width:1.3}
 .box.good rect{stroke:var(--good)}.box.warning rect{stroke:var(--warning);fill:var(--warning-bg)}
 .box.bad rect{stroke:var(--bad);fill:var(--bad-bg);stroke-width:2.4}.box.input rect{fill:var(--ground);stroke-dasharray:4 3}
@@ -97,6 +99,8 @@ body{max-width:none;padding:0;font-size:10.5pt;-webkit-print-color-adjust:exact;
 h1{font-size:19pt}h2{font-size:14pt;margin-top:22pt}h3{font-size:12pt}
 h2,h3,h4,summary,figcaption,caption,.rowlegend{break-after:avoid}figure,tr,.findings li,.verdict,svg.chain{break-inside:avoid}
 thead{display:table-header-group}table{font-size:9pt}th,td{padding:3pt 6pt}.scroll{overflow:visible}
+.row{grid-template-columns:repeat(auto-fill,minmax(min(100%,calc(var(--w)*.68)),1fr))}
+svg.chain{min-width:0;max-height:135mm;width:auto}
 details{border:0;padding:0}details::details-content{content-visibility:visible;display:block}
 a{color:inherit}nav a{text-decoration:none}#probe,.fold{display:none!important}
 .l.c1:not(.d){stroke-dasharray:9 3}.l.c2:not(.d){stroke-dasharray:2 2}.l.c3:not(.d){stroke-dasharray:9 3 2 3}

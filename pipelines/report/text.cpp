@@ -93,10 +93,33 @@ std::string escape(std::string_view text) {
   return out;
 }
 
+std::string bind_units(std::string_view text) {
+  // Longer symbols first: "N m" before "N".
+  static constexpr std::array<std::string_view, 26> kUnits = {
+      "N m/rad", "N m", "rad/s", "deg/s", "m/s^2", "m/s", "µV", "uV", "mV", "Hz", "kHz", "ms", "min", "kg", "mm", "cm", "rad",
+      "deg", "MB", "lb", "dB", "%", "N", "s", "m", "V"};
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    out += text[i];
+    const bool after_number = std::isdigit(static_cast<unsigned char>(text[i])) && i + 2 < text.size() && text[i + 1] == ' ';
+    if (!after_number) continue;
+    for (const std::string_view unit : kUnits) {
+      const std::size_t end = i + 2 + unit.size();
+      if (!starts_with_at(text, i + 2, unit) || (end < text.size() && is_word(text[end]))) continue;
+      const std::string set = typeset_unit(unit);
+      out += (set.starts_with("°") ? "" : "\u202F") + set;
+      i = end - 1;
+      break;
+    }
+  }
+  return out;
+}
+
 std::string inline_markup(std::string_view text) {
   std::string out;
   std::size_t plain = 0;  // start of the text not yet written
-  const auto flush = [&](std::size_t end) { out += escape(text.substr(plain, end - plain)); };
+  const auto flush = [&](std::size_t end) { out += escape(bind_units(text.substr(plain, end - plain))); };
   for (std::size_t i = 0; i < text.size();) {
     const bool word_start = i == 0 || !std::isalnum(static_cast<unsigned char>(text[i - 1]));
     if (text[i] == '`') {
@@ -156,8 +179,9 @@ std::string typeset_label(std::string_view label) {
   if (label.empty() || label.back() != ']') return std::string(label);
   const std::size_t open = label.rfind('[');
   if (open == std::string_view::npos) return std::string(label);
-  const std::string unit = typeset_unit(label.substr(open + 1, label.size() - open - 2));
-  return std::string(label.substr(0, open)) + "[" + unit + "]";
+  const std::string_view unit = label.substr(open + 1, label.size() - open - 2);
+  if (unit == "1") return std::string(label.substr(0, open > 0 ? open - 1 : 0));
+  return std::string(label.substr(0, open)) + "[" + typeset_unit(unit) + "]";
 }
 
 std::string make_anchor(std::string_view title) {

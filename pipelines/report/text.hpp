@@ -10,11 +10,15 @@ namespace brachium::pipelines::report {
 /// HTML nor XML admits) and bytes that are not UTF-8 become U+FFFD.
 std::string escape(std::string_view text);
 
-/// Running text as HTML: escaped, `code` in backticks, doi:10... and https://... as links.
+/// Running text as HTML: escaped, `code` in backticks, doi:10... and https://... as links; a number and its unit, "1.02
+/// N m" or "30 %", stay on one line. What stands in backticks is left as it is.
 std::string inline_markup(std::string_view text);
 
+/// `text` with narrow no-break spaces between a number and a unit, and inside the unit. Not escaped.
+std::string bind_units(std::string_view text);
+
 /// Units as one sets them: "N m" with a narrow no-break space, "m/s^2" with a superscript, "uV" as µV, "deg" as °.
-/// Only inside the brackets at the end of a label, "moment [N m]"; the rest is left as it is. Not escaped.
+/// The unit 1 is left out. Only inside the brackets at the end of a label, "moment [N m]"; the rest is left as it is. Not escaped.
 std::string typeset_label(std::string_view label);
 
 /// A unit alone, set as in typeset_label.

@@ -37,10 +37,16 @@ double nice_step(double span, int intervals) {
 }
 
 std::vector<Tick> linear_ticks(double lower, double upper, int intervals) {
-  const double step = nice_step(upper - lower, intervals);
+  double step = nice_step(upper - lower, intervals);
+  double first = std::ceil(lower / step - kRounding);
+  double last = std::floor(upper / step + kRounding);
+  // One number alone is no scale.
+  for (int finer = 2; last - first < 1.0 && finer <= 16; finer *= 2) {
+    step = nice_step(upper - lower, finer * intervals);
+    first = std::ceil(lower / step - kRounding);
+    last = std::floor(upper / step + kRounding);
+  }
   const double largest = std::max(std::abs(lower), std::abs(upper));
-  const double first = std::ceil(lower / step - kRounding);
-  const double last = std::floor(upper / step + kRounding);
   std::vector<Tick> ticks;
   for (double k = first; k <= last; k += 1.0) {
     const double value = k == 0.0 ? 0.0 : k * step;

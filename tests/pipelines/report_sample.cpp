@@ -143,6 +143,7 @@ Section calibration() {
   section.blocks.push_back(grid);
   Plot bars{.title = "Strength factors", .y_label = "strength [1]"};
   bars.categories = kMuscles;
+  bars.categories[5] = "TRIlat (excluded)";
   bars.series = {{.label = "start", .x = {0, 1, 2, 3, 4, 5, 6}, .y = {1, 1, 1, 1, 1, 1, 1}, .style = Style::bars},
                  {.label = "fitted", .x = {0, 1, 2, 3, 4, 5, 6}, .y = {1.2, .9, 1.5, 1.1, .7, .85, 1}, .style = Style::bars}};
   bars.levels = {{.y = 1.5, .label = "upper bound", .tone = Tone::warning}};
