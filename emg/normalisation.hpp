@@ -27,6 +27,7 @@ struct NormalisationOptions {
   double window_s = 0.5;        ///< of the moving mean; 0: the single largest sample
   double lowpass_hz = 6.0;      ///< edge of the envelope filter, for expected_bias only
   double plateau_s = 3.0;       ///< duration of an MVC's plateau, for expected_bias only
+  double bandwidth_hz = 190.0;  ///< statistical bandwidth of the raw EMG, for expected_bias only
 };
 
 /// One trial's envelope of one channel.
@@ -73,11 +74,17 @@ struct WindowMaximum {
 };
 WindowMaximum moving_window_maximum(std::span<const double> samples, double rate_hz, double window_s);
 
-/// Relative bias expected of the largest moving-window mean of the envelope of a constant contraction; `trials`
-/// plateaus of plateau_s are searched. See README for the derivation and how far it was checked.
-double expected_bias(double window_s, double lowpass_hz, double plateau_s, std::size_t trials);
-/// Coefficient of variation of that window mean.
-double envelope_variation(double window_s, double lowpass_hz);
+/// What chance does to the envelope of a perfectly constant contraction, whose raw EMG is Gaussian noise.
+///   W   bandwidth_hz  [Hz]  statistical bandwidth (∫P df)^2/∫P^2 df of the raw EMG: 420 for white noise of 30-450 Hz,
+///                           about 190 for the spectrum of synthetic_emg.hpp
+///   f_c lowpass_hz    [Hz]  -3 dB edge of the zero-lag envelope filter, effective order 4
+///   T   window_s      [s]   moving mean
+/// Variation: CV^2 = 1.05 B/(2 W), B = ∫ |G|^2 sinc^2(f T) df the noise bandwidth of filter and window (the rectified
+/// Gaussian's covariance is ρ^2 (1 + ρ^2/12 + ...)/π; 1.05 stands for the series).
+double envelope_variation(double window_s, double lowpass_hz, double bandwidth_hz);
+/// Relative excess of the largest window mean over the true mean: CV (c + 0.5772/c), c = sqrt(2 ln N), N the expected
+/// number of up-crossings of the mean in all plateaus (Davenport 1964, doi:10.1680/iicep.1964.10112).
+double expected_bias(double window_s, double lowpass_hz, double plateau_s, std::size_t trials, double bandwidth_hz);
 
 /// Excitation above 1 is information (a poor MVC): counted and time-stamped, never clamped.
 struct Excess {

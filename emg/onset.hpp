@@ -1,11 +1,14 @@
 #pragma once
 /// When does a muscle switch on and off?
 ///
-/// threshold  Rectified, low-passed EMG; active where the mean of a window exceeds the baseline's mean + h SD
-///            (Hodges & Bui 1996, doi:10.1016/S0921-884X(96)95190-5).
-/// tkeo       The same after the Teager-Kaiser operator ψ_k = x_k^2 - x_(k-1) x_(k+1), which is large where amplitude
-///            and frequency are (Li, Zhou & Aruin 2007, doi:10.1007/s10439-007-9320-z).
-/// Both with a second threshold in time: shorter activity and shorter gaps do not count.
+/// threshold  Detector d = |x|, low-passed (Hodges & Bui 1996, doi:10.1016/S0921-884X(96)95190-5).
+/// tkeo       Detector d = |ψ|, ψ_k = x_k^2 - x_(k-1) x_(k+1), the Teager-Kaiser operator, which is large where amplitude
+///            and frequency are (Li, Zhou & Aruin 2007, doi:10.1007/s10439-007-9320-z), low-passed, h = 15
+///            (Solnik et al. 2010, doi:10.1007/s00421-010-1521-8).
+/// With the threshold T = mean + h SD of d at rest, a muscle switches on at the first sample where d and the mean of d
+/// over the window that follows exceed T, and off at the first where both do not. (Asking for the window's mean alone
+/// would date the onset of a strong burst too early by up to the window.) A second threshold in time: shorter bursts
+/// and shorter gaps do not count; gaps are closed first.
 
 #include <cstddef>
 #include <span>
