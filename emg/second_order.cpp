@@ -68,11 +68,15 @@ SecondOrderStep second_order_step(double time_constant_1_s, double time_constant
   }
   for (int k = 0; k < squarings; ++k) exponential = product(exponential, exponential);
 
+  // A constant is answered by that constant: from_start and transition of a row sum to 1. Each squaring doubles the
+  // relative error of the factor e^(-shift scale), which all entries share; dividing by the sum removes it.
   SecondOrderStep step;
   for (std::size_t i = 0; i < 4; ++i) {
-    step.from_change[i] = exponential[i + 2][0];
-    step.from_start[i] = exponential[i + 2][1];
-    for (std::size_t j = 0; j < 4; ++j) step.transition[i][j] = exponential[i + 2][j + 2];
+    const auto& row = exponential[i + 2];
+    const double sum = row[1] + row[2] + row[3] + row[4] + row[5];
+    step.from_change[i] = row[0] / sum;
+    step.from_start[i] = row[1] / sum;
+    for (std::size_t j = 0; j < 4; ++j) step.transition[i][j] = row[j + 2] / sum;
   }
   return step;
 }
