@@ -11,9 +11,10 @@
 
 namespace brachium::io {
 
-/// How a delimited file is laid out. Rows are counted from 1, after a byte-order mark, comments not counted.
+/// How a delimited file is laid out. Rows are counted from 1 after skip_rows; comment lines are not counted.
+/// A header cell "emg1 (uV)" or "emg1 [uV]" gives name and unit where the units row says nothing.
 struct CsvLayout {
-  std::string delimiter = ",";               ///< one character, or "whitespace"
+  std::string delimiter = ",";               ///< one character, "tab" or "whitespace"
   bool decimal_comma = false;                ///< 3,14; the delimiter must then be another character
   std::string comment;                       ///< prefix of lines to skip; empty: none
   std::size_t skip_rows = 0;                 ///< rows before everything else (free text of the recorder)

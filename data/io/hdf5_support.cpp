@@ -1,6 +1,8 @@
 #include "data/io/hdf5_support.hpp"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -21,6 +23,13 @@ std::mutex& library_mutex() {
 herr_t find_errno(unsigned, const H5E_error2_t* error, void* found) {
   if (!error->desc) return 0;
   if (const char* at = std::strstr(error->desc, "errno = ")) *static_cast<int*>(found) = std::atoi(at + 8);
+  return 0;
+}
+
+// HDF5 clears its error stack at the next call, and handles close on the way out: the system's error is noted at once.
+int last_system_error = 0;  // guarded by library_mutex()
+herr_t note_error(hid_t stack, void*) {
+  H5Ewalk2(stack, H5E_WALK_UPWARD, find_errno, &last_system_error);
   return 0;
 }
 
@@ -74,19 +83,33 @@ std::optional<std::vector<std::string>> read_any_text(hid_t type, hid_t space, R
 }  // namespace
 
 Lock::Lock() : lock_(library_mutex()) {
+  // HDF5 1.10 crashes in its own exit handler after a file could not be written to a full disk. We close all that we
+  // open, so that handler has nothing to do.
+  static const bool once = [] { return H5dont_atexit() >= 0; }();
+  static_cast<void>(once);
+  last_system_error = 0;
   H5Eget_auto2(H5E_DEFAULT, &printer_, &printer_data_);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5Eset_auto2(H5E_DEFAULT, note_error, nullptr);
 }
 
 Lock::~Lock() { H5Eset_auto2(H5E_DEFAULT, printer_, printer_data_); }
 
-void fail_write(const std::filesystem::path& file, const std::string& what) {
-  int error = 0;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find_errno, &error);
+void fail_write(hid_t file, const std::filesystem::path& path, const std::string& what) {
+  const int error = last_system_error;
+  divert(file);
   throw InputError("write-failed",
-                   fmt::format("cannot write {} to `{}`: {}", what, file.string(),
+                   fmt::format("cannot write {} to `{}`: {}", what, path.string(),
                                error ? std::strerror(error) : "the HDF5 library refused"),
                    "free some space on the disk, or choose another folder, and run again");
+}
+
+void divert(hid_t file) {
+  void* driver_handle = nullptr;
+  if (file < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &driver_handle) < 0) return;
+  const int memory = ::memfd_create("discarded", MFD_CLOEXEC);
+  if (memory < 0) return;
+  ::dup2(memory, *static_cast<int*>(driver_handle));
+  ::close(memory);
 }
 
 Handle text_type() {

@@ -60,8 +60,12 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Throws InputError("write-failed") with the system's reason out of HDF5's error stack.
-[[noreturn]] void fail_write(const std::filesystem::path& file, const std::string& what);
+/// Throws InputError("write-failed") with the system's reason out of HDF5's error stack, after divert(file).
+[[noreturn]] void fail_write(hid_t file, const std::filesystem::path& path, const std::string& what);
+
+/// Sends all further writes of an open file to memory, so that HDF5 can close a file that will be thrown away even
+/// when the disk is full (closing fails otherwise, and HDF5 1.10 does not survive that).
+void divert(hid_t file);
 
 Handle text_type();                                 ///< variable-length UTF-8
 Handle create_group(hid_t parent, const char* name);  ///< id < 0 on failure

@@ -13,10 +13,10 @@
 
 namespace brachium::io {
 
-/// Columns of a storage file that are angles. inDegrees=yes says that *rotational* columns are in degrees, but not
-/// which columns those are. Stated rule: a column is rotational unless its name ends in _tx, _ty, _tz (OpenSim's
-/// names of translations), in _force or _moment, or holds ".activation", ".fiber_length" or "/value"-less state
-/// names of muscles. Such columns carry the unit "deg", others none; import needs a unit for those it uses.
+/// inDegrees=yes says that rotational columns are in degrees, but not which columns those are. Stated rule: a column
+/// is rotational unless its name ends in _tx, _ty, _tz (OpenSim's translations), _force, _moment, _X, _Y, _Z, _vx, _vy,
+/// _vz, _px, _py or _pz, holds a dot (muscle states of OpenSim 3), or is a path of OpenSim 4 outside /jointset.
+/// Such columns carry the unit "deg" in a file in degrees, all others none: an import names their units.
 bool is_rotational_column(const std::string& name);
 
 struct StorageHeader {
@@ -28,10 +28,10 @@ struct StorageHeader {
 /// Opens a storage file. A stated row count that disagrees with the rows is an error found by check_timing; a stated
 /// column count that disagrees with the column labels is "column-count-mismatch" here.
 /// Throws InputError: "missing-file", "empty-file", "not-a-storage-file", "column-count-mismatch", "duplicate-column",
-/// "unsupported-data-type" (DataType other than double).
+/// "unsupported-data-type" (DataType other than double), "unsupported-version".
 Recording open_storage(const std::filesystem::path& file, StorageHeader* header = nullptr);
 
-/// Writes signals of equal rate, start and count as a version-1 storage file (tab separated, 17 digits), atomically.
+/// Writes signals of equal rate, start and count as a version-1 storage file (tab separated, all digits), atomically.
 /// Angles are written in radians with inDegrees=no, or in degrees with inDegrees=yes.
 /// Throws InputError("unequal-time-stamps") naming the first signal that differs.
 void write_storage(std::span<const data::Signal> signals, const std::string& title, const std::filesystem::path& file,

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,6 +45,7 @@ struct RowFormat {
   std::string comment;           ///< lines that start with this are skipped; empty: none
   bool quotes = true;            ///< fields may stand in double quotes
   std::optional<std::size_t> time_field;     ///< field that holds the time
+  double time_to_s = 1.0;                    ///< factor from the file's time unit to s
   std::vector<std::size_t> value_fields;     ///< field of each column of the header
   std::size_t fields = 0;                    ///< fields a row must have (0: not checked)
   bool trailing_empty = false;               ///< rows may end with further empty fields
@@ -66,6 +68,8 @@ class Recording {
   /// rows x columns, in the file's units. Returns the number of rows, 0 at the end.
   /// Throws InputError with file:line:column: "not-a-number", "missing-field", "extra-field", "non-finite-sample".
   std::size_t read_rows(std::span<double> time, std::span<double> values);
+  /// The same for the time stamps alone, several times faster; other fields are not looked at.
+  std::size_t read_times(std::span<double> time);
   void rewind();
   /// Line (from 1) of the row that was read last.
   std::size_t line() const;
@@ -78,7 +82,8 @@ class Recording {
 
 /// What the time stamps of a recording say, found in one pass over it.
 struct Timing {
-  std::size_t rows = 0;
+  std::size_t rows = 0;         ///< rows of the file
+  std::size_t samples = 0;      ///< samples on the even grid; equals rows unless gaps are bridged
   double rate_hz = 0.0;         ///< stated rate, else the mean rate of the time stamps
   double start_time_s = 0.0;
   double largest_jitter = 0.0;  ///< largest distance of a time stamp from the even grid [sample periods]
@@ -89,18 +94,31 @@ struct Timing {
 
 /// Rules for uneven time stamps.
 enum class TimingRule {
-  strict,      ///< gaps, repeated stamps and rates that disagree with the stamps are errors
-  interpolate  ///< as strict, but gaps and jitter are bridged by straight lines onto the even grid, with a warning
+  strict,      ///< gaps, jitter and rates that disagree with the stamps are errors
+  interpolate  ///< gaps and jitter are bridged by straight lines onto the even grid, with a warning
 };
 
-/// Checks time stamps and counts rows; throws InputError: "empty-recording", "time-backwards", "time-gap",
-/// "rate-mismatch", "row-count-mismatch", "no-time" (neither a time column nor a rate). Rewinds.
-/// `rate_hz` overrides what the file states (and must agree with the time stamps, if there are any).
-Timing check_timing(Recording& recording, TimingRule rule = TimingRule::strict,
-                    std::optional<double> rate_hz = std::nullopt);
+struct TimingOptions {
+  TimingRule rule = TimingRule::strict;
+  std::optional<double> rate_hz;    ///< overrides what the file states; must agree with its time stamps, if any
+  bool ignore_stated_rows = false;  ///< a row count in the header that is wrong becomes a warning
+};
+
+/// Checks time stamps and counts rows. Time stamps must lie within 0.1 sample periods of the even grid (TimingRule);
+/// a stated rate must agree with them to 0.1 %. Without a stated rate the mean rate of the stamps is taken, rounded
+/// to a whole number of Hz where that moves no stamp by more than 1 % of a sample period.
+/// Throws InputError with the place: "empty-recording", "time-backwards", "time-gap", "time-jitter", "rate-mismatch",
+/// "row-count-mismatch", "no-time" (neither a time column nor a rate). Rewinds. Adds warnings to `warnings`.
+Timing check_timing(Recording& recording, const TimingOptions& options, std::vector<data::Diagnostic>& warnings);
+
+/// Hands the samples of the chosen columns on in blocks, evenly spaced as `timing` says: sink(first, block), block
+/// column-major: block[c] are the samples of columns[c]. With TimingRule::interpolate they are read off straight
+/// lines between the recorded rows. Memory does not grow with the recording.
+using BlockSink = std::function<void(std::size_t first, std::span<const std::vector<double>> block)>;
+void stream_columns(Recording& recording, const Timing& timing, TimingRule rule, std::span<const std::size_t> columns,
+                    const BlockSink& sink);
 
 /// All columns in memory, in the file's units, evenly spaced; for files known to be small.
-std::vector<data::Signal> read_all(Recording& recording, TimingRule rule = TimingRule::strict,
-                                   std::optional<double> rate_hz = std::nullopt);
+std::vector<data::Signal> read_all(Recording& recording, const TimingOptions& options = {});
 
 }  // namespace brachium::io

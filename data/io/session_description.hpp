@@ -31,7 +31,7 @@ struct SignalMapping {
   std::string muscle;
   std::string coordinate;
   double scale = 1.0;      ///< sign * scale of the description
-  double offset = 0.0;     ///< added after scaling, SI
+  double offset = 0.0;     ///< added after scaling, in SI
   data::SourceSpan where;
 };
 
@@ -42,8 +42,7 @@ struct FileMapping {
   FileFormat format = FileFormat::csv;
   CsvLayout csv;                    ///< format csv only
   std::vector<std::string> trials;  ///< patterns of trial names the file belongs to; empty: all
-  TimingRule timing = TimingRule::strict;
-  std::optional<double> rate_hz;    ///< overrides or checks the file's own
+  TimingOptions timing;
   double time_offset_s = 0.0;       ///< added to the file's time stamps: aligns recorders' clocks
   std::vector<SignalMapping> signals;
   data::SourceSpan where;

@@ -43,9 +43,19 @@ struct SessionFileWriter::Impl {
   bool committed = false;
 
   Impl(const std::filesystem::path& path, const Options& o) : target(path), options(o) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (!committed) hdf5::divert(file.get());
+  }
 
   void need(bool done, const std::string& what) const {
-    if (!done) hdf5::fail_write(target.target(), what);
+    if (!done) hdf5::fail_write(file.get(), target.target(), what);
+  }
+
+  // Flushing first: a close that fails would free the dataset and leave the file in a state HDF5 cannot close.
+  void close(Handle& dataset, const std::string& what) const {
+    need(H5Dflush(dataset.get()) >= 0 && dataset.close(), what);
   }
 
   OpenTrial& trial(const std::string& name) {
@@ -99,9 +109,9 @@ struct SessionFileWriter::Impl {
       need(write_slab(scale.get(), first, std::span(times).first(n)), "time stamps");
     }
     need(hdf5::write_attribute(scale.get(), "units", std::string("s")) &&
-             hdf5::write_attribute(scale.get(), "unit", std::string("s")) && H5DSset_scale(scale.get(), name.c_str()) >= 0 &&
-             scale.close(),
+             hdf5::write_attribute(scale.get(), "unit", std::string("s")) && H5DSset_scale(scale.get(), name.c_str()) >= 0,
          "time stamps");
+    close(scale, "time stamps");
     trial.scales.emplace(key, name);
     return name;
   }
@@ -214,7 +224,7 @@ void SessionFileWriter::write_samples(const std::string& trial, const std::strin
   if (!out.dataset) throw std::logic_error("SessionFileWriter: samples of signal `" + signal + "` written twice");
   impl_->need(impl_->write_slab(out.dataset.get(), first, samples), fmt::format("signal `{}` of trial `{}`", signal, trial));
   out.written += samples.size();
-  if (out.written >= out.info.count) impl_->need(out.dataset.close(), fmt::format("signal `{}` of trial `{}`", signal, trial));
+  if (out.written >= out.info.count) impl_->close(out.dataset, fmt::format("signal `{}` of trial `{}`", signal, trial));
 }
 
 void SessionFileWriter::commit() {

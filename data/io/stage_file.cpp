@@ -62,13 +62,14 @@ std::vector<Diagnostic> from_json(const std::string& text) {
 // ---------------------------------------------------------------- writing
 
 struct ContentWriter {
+  hid_t root;
   const std::filesystem::path& file;
 
   void need(bool done, const std::string& what) const {
-    if (!done) hdf5::fail_write(file, what);
+    if (!done) hdf5::fail_write(root, file, what);
   }
 
-  void texts(hid_t root, const char* name, const std::map<std::string, std::string>& values) const {
+  void texts(const char* name, const std::map<std::string, std::string>& values) const {
     const Handle group = hdf5::create_group(root, name);
     need(static_cast<bool>(group), name);
     for (const auto& [key, value] : values) need(hdf5::write_attribute(group.get(), key, value), name);
@@ -208,10 +209,10 @@ struct ContentReader {
 void StageFileWriter::finish(const StageFileContent& content) {
   {
     const hdf5::Lock lock;
-    const ContentWriter write{target()};
     const auto root = static_cast<hid_t>(hdf5_id());
-    write.texts(root, "attributes", content.attributes);
-    write.texts(root, "fingerprint", content.fingerprint);
+    const ContentWriter write{root, target()};
+    write.texts("attributes", content.attributes);
+    write.texts("fingerprint", content.fingerprint);
     write.need(hdf5::write_text(root, "diagnostics", to_json(content.diagnostics)), "the findings");
     if (content.subject) write.need(hdf5::write_text(root, "subject", subject_to_toml(*content.subject)), "the subject");
     const Handle tables = hdf5::create_group(root, "tables");
