@@ -23,7 +23,8 @@ constexpr double kLimitFactor = 1.96;  // two-sided 95 % of a normal distributio
 
 void check(const Pair& pair) {
   if (pair.time_s.size() != pair.measured.size() || pair.measured.size() != pair.modelled.size()) {
-    throw std::logic_error("agreement of `" + pair.quantity + "`: time, measured and modelled differ in length");
+    throw std::logic_error("agreement of `" + pair.quantity +
+                           "`: time, measured and modelled differ in length");
   }
 }
 
@@ -31,7 +32,9 @@ std::string axis_label(const std::string& name, const std::string& unit) {
   return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
 }
 
-std::vector<double> copy(std::span<const double> values) { return {values.begin(), values.end()}; }
+std::vector<double> copy(std::span<const double> values) {
+  return {values.begin(), values.end()};
+}
 
 std::vector<double> residuals(const Pair& pair) {
   std::vector<double> e(pair.measured.size());
@@ -43,9 +46,9 @@ std::vector<double> residuals(const Pair& pair) {
 std::string figures_sentence(const Pair& pair) {
   try {
     const AgreementFigures f = agreement_figures(pair.measured, pair.modelled);
-    return "RMSE " + quantity(f.rmse, pair.unit, 3) + ", NRMSE " + percent(f.nrmse, 3) + ", R² " + fixed(f.r_squared, 3) +
-           ", bias " + quantity(f.bias, pair.unit, 3) + ", largest " + quantity(f.largest, pair.unit, 3) + ", " +
-           std::to_string(f.frames) + " frames.";
+    return "RMSE " + quantity(f.rmse, pair.unit, 3) + ", NRMSE " + percent(f.nrmse, 3) + ", R² " +
+           fixed(f.r_squared, 3) + ", bias " + quantity(f.bias, pair.unit, 3) + ", largest " +
+           quantity(f.largest, pair.unit, 3) + ", " + std::to_string(f.frames) + " frames.";
   } catch (const data::InputError& error) {
     return "No figures of agreement: " + error.diagnostics().front().message + ".";
   }
@@ -54,7 +57,8 @@ std::string figures_sentence(const Pair& pair) {
 }  // namespace
 
 AgreementFigures agreement_figures(std::span<const double> measured, std::span<const double> modelled) {
-  if (measured.size() != modelled.size()) throw std::logic_error("agreement: measured and modelled differ in length");
+  if (measured.size() != modelled.size())
+    throw std::logic_error("agreement: measured and modelled differ in length");
   AgreementFigures f;
   double sum_measured = 0.0;
   double sum_residual = 0.0;
@@ -76,8 +80,9 @@ AgreementFigures agreement_figures(std::span<const double> measured, std::span<c
     highest = std::max(highest, measured[i]);
   }
   if (f.frames < 2) {
-    throw data::InputError("no-common-frames", "measured and modelled values have " + std::to_string(f.frames) +
-                                                   " frames in common, 2 are needed");
+    throw data::InputError(
+        "no-common-frames",
+        "measured and modelled values have " + std::to_string(f.frames) + " frames in common, 2 are needed");
   }
   const double n = static_cast<double>(f.frames);
   const double mean = sum_measured / n;
@@ -104,7 +109,8 @@ Plot make_agreement_plot(const std::string& title, const Pair& pair) {
   const std::vector<double> time = copy(pair.time_s);
   Plot plot{.title = title, .x_label = "time [s]", .y_label = axis_label(pair.quantity, pair.unit)};
   plot.height_px = 200.0;
-  plot.series.push_back({.label = "measured", .x = time, .y = copy(pair.measured), .colour = kMeasuredColour});
+  plot.series.push_back(
+      {.label = "measured", .x = time, .y = copy(pair.measured), .colour = kMeasuredColour});
   plot.series.push_back({.label = "modelled",
                          .x = time,
                          .y = copy(pair.modelled),
@@ -126,8 +132,10 @@ Plot make_scatter_plot(const std::string& title, const Pair& pair) {
             .y_label = axis_label("modelled " + pair.quantity, pair.unit)};
   plot.height_px = 300.0;
   plot.equal_axes = true;
-  plot.series.push_back(
-      {.x = copy(pair.measured), .y = copy(pair.modelled), .style = Style::points, .colour = kMeasuredColour});
+  plot.series.push_back({.x = copy(pair.measured),
+                         .y = copy(pair.modelled),
+                         .style = Style::points,
+                         .colour = kMeasuredColour});
   plot.note = figures_sentence(pair);
   return plot;
 }
@@ -140,16 +148,18 @@ Plot make_bland_altman_plot(const std::string& title, const Pair& pair) {
   plot.height_px = 300.0;
   std::vector<double> mean(pair.measured.size());
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = 0.5 * (pair.measured[i] + pair.modelled[i]);
-  plot.series.push_back({.x = std::move(mean), .y = residuals(pair), .style = Style::points, .colour = kMeasuredColour});
+  plot.series.push_back(
+      {.x = std::move(mean), .y = residuals(pair), .style = Style::points, .colour = kMeasuredColour});
   try {
     const AgreementFigures f = agreement_figures(pair.measured, pair.modelled);
     const double half = kLimitFactor * f.deviation;
     plot.levels = {{.y = f.bias, .label = "bias " + quantity(f.bias, pair.unit, 3)},
                    {.y = f.bias + half, .label = "+1.96 sd " + quantity(f.bias + half, pair.unit, 3)},
                    {.y = f.bias - half, .label = "−1.96 sd " + quantity(f.bias - half, pair.unit, 3)}};
-    plot.note = "Bias and limits of agreement, bias ± 1.96 sd (doi:10.1016/S0140-6736(86)90837-8). Frames of one "
-                "recording depend on each other: the limits describe these " +
-                std::to_string(f.frames) + " frames, not future ones.";
+    plot.note =
+        "Bias and limits of agreement, bias ± 1.96 sd (doi:10.1016/S0140-6736(86)90837-8). Frames of one "
+        "recording depend on each other: the limits describe these " +
+        std::to_string(f.frames) + " frames, not future ones.";
   } catch (const data::InputError& error) {
     plot.note = "No limits of agreement: " + error.diagnostics().front().message + ".";
   }

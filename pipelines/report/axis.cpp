@@ -7,9 +7,12 @@
 namespace brachium::pipelines::report {
 namespace {
 
-constexpr double kLargest = 1e300;  // beyond it the length of an axis may overflow
+constexpr double kLargest = 1e300;    // beyond it the length of an axis may overflow
+constexpr double kSmallest = 1e-300;  // below it the ratio of a logarithmic axis may
 
-bool can_show(double value, bool log) { return std::abs(value) < kLargest && (!log || value > 0.0); }
+bool can_show(double value, bool log) {
+  return std::abs(value) < kLargest && (!log || value > kSmallest);
+}
 
 }  // namespace
 
@@ -34,7 +37,8 @@ void Extent::include(double value) {
   upper_ = first ? value : std::max(upper_, value);
 }
 
-Axis make_axis(const Extent& extent, bool log, double margin, std::optional<double> lower, std::optional<double> upper) {
+Axis make_axis(const Extent& extent, bool log, double margin, std::optional<double> lower,
+               std::optional<double> upper) {
   Axis axis{.lower = log ? 1.0 : 0.0, .upper = log ? 10.0 : 1.0, .log = log};
   if (!extent.empty()) {
     axis.lower = extent.lower();
@@ -80,7 +84,8 @@ Extent y_extent(const Plot& plot) {
   for (const Series& series : plot.series) {
     for (const double y : series.y) extent.include(y);
     for (const double y : series.y_lower) extent.include(y);
-    const bool from_zero = series.style == Style::bars || (series.style == Style::area && series.y_lower.empty());
+    const bool from_zero =
+        series.style == Style::bars || (series.style == Style::area && series.y_lower.empty());
     if (from_zero && !plot.log_y && !extent.empty()) extent.include(0.0);
   }
   for (const Level& level : plot.levels) extent.include(level.y);

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 
 #include "data/model/units.hpp"
 
 namespace brachium::pipelines::report {
 
-Cell make_text_cell(std::string text, Tone tone) { return {.text = std::move(text), .tone = tone}; }
+Cell make_text_cell(std::string text, Tone tone) {
+  return {.text = std::move(text), .tone = tone};
+}
 
 Cell make_number_cell(double value, int digits, Tone tone) {
   return {.text = significant(value, digits), .tone = tone, .numeric = true};
@@ -15,9 +18,12 @@ Cell make_number_cell(double value, int digits, Tone tone) {
 
 Tone tone_of(data::Severity severity) {
   switch (severity) {
-    case data::Severity::error: return Tone::bad;
-    case data::Severity::warning: return Tone::warning;
-    case data::Severity::note: return Tone::plain;
+    case data::Severity::error:
+      return Tone::bad;
+    case data::Severity::warning:
+      return Tone::warning;
+    case data::Severity::note:
+      return Tone::plain;
   }
   return Tone::plain;
 }
@@ -29,7 +35,8 @@ Paragraph make_finding(const data::Diagnostic& diagnostic) {
   if (diagnostic.where && !diagnostic.where->file.empty()) {
     source += (source.empty() ? "" : ", ") + diagnostic.where->file;
     if (diagnostic.where->line > 0) source += ":" + std::to_string(diagnostic.where->line);
-    if (diagnostic.where->line > 0 && diagnostic.where->column > 0) source += ":" + std::to_string(diagnostic.where->column);
+    if (diagnostic.where->line > 0 && diagnostic.where->column > 0)
+      source += ":" + std::to_string(diagnostic.where->column);
   }
   if (!source.empty()) text += " (" + source + ")";
   return {.text = std::move(text), .tone = tone_of(diagnostic.severity)};
@@ -38,14 +45,20 @@ Paragraph make_finding(const data::Diagnostic& diagnostic) {
 Tone verdict_tone(const std::string& text) {
   std::string lower = text;
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  const auto starts_with_any = [&](std::initializer_list<const char*> words) {
-    return std::any_of(words.begin(), words.end(), [&](const char* word) { return lower.starts_with(word); });
+  // Whole words: "badly placed" is no verdict.
+  const auto starts_with_any = [&](std::initializer_list<std::string_view> words) {
+    return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
+      const bool ends = lower.size() <= word.size() || !std::isalnum(static_cast<unsigned char>(lower[word.size()]));
+      return lower.starts_with(word) && ends;
+    });
   };
   if (starts_with_any({"not identified", "failed", "bad", "rejected", "did not converge"})) return Tone::bad;
-  if (starts_with_any({"at upper bound", "at lower bound", "at bound", "excluded", "correlated", "warning", "undriven"})) {
+  if (starts_with_any({"at upper bound", "at lower bound", "at bound", "excluded", "correlated", "warning",
+                       "undriven"})) {
     return Tone::warning;
   }
-  if (starts_with_any({"identified", "passed", "converged"}) || lower == "ok" || lower == "good") return Tone::good;
+  if (starts_with_any({"identified", "passed", "converged"}) || lower == "ok" || lower == "good")
+    return Tone::good;
   return Tone::plain;
 }
 
@@ -56,9 +69,11 @@ Tone threshold_tone(double value, double good, double bad) {
   return Tone::bad;
 }
 
-Series make_series(const data::Signal& signal, const std::string& label, const std::string& unit, Style style) {
+Series make_series(const data::Signal& signal, const std::string& label, const std::string& unit,
+                   Style style) {
   const bool as_stored = unit.empty() || unit == signal.info.unit;
-  const double factor = as_stored ? 1.0 : data::convert(1.0, signal.info.unit, unit);  // units here have no offsets
+  const double factor =
+      as_stored ? 1.0 : data::convert(1.0, signal.info.unit, unit);  // units here have no offsets
   Series series{.label = label, .style = style};
   series.x.reserve(signal.samples.size());
   series.y.reserve(signal.samples.size());

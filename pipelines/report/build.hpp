@@ -1,6 +1,6 @@
 #pragma once
-/// What fills documents: numbers with the digits they deserve, tables out of data::Table, curves out of data::Signal,
-/// and the pictures that stages share. Nothing here knows of HTML.
+/// What fills documents: numbers with the digits they deserve, tables out of data::Table, curves out of
+/// data::Signal, and the pictures that stages share. Nothing here knows of HTML.
 
 #include <functional>
 #include <map>
@@ -28,20 +28,21 @@ Paragraph make_finding(const data::Diagnostic& diagnostic);
 // ---------------------------------------------------------------- tables
 
 /// The tone of verdict texts as calibration and quality write them: bad for "NOT IDENTIFIED" and "failed",
-/// warning for "AT ... BOUND", "excluded", "correlated", good for "identified", "ok" and "passed"; else plain.
+/// warning for "AT ... BOUND", "excluded", "correlated", good for "identified", "ok" and "passed"; else
+/// plain.
 Tone verdict_tone(const std::string& text);
 /// Good, warning or bad by thresholds; falling = true: small values are good.
 Tone threshold_tone(double value, double good, double bad);
 
 struct GridOptions {
-  int digits = 4;                                       ///< significant digits of numbers
-  std::map<std::string, int> column_digits{};           ///< by column name, where they differ
-  std::map<std::string, std::string> names{};           ///< shown instead of the column's name
-  std::map<std::string, std::string> units{};           ///< shown in another unit of the same dimension
+  int digits = 4;                              ///< significant digits of numbers
+  std::map<std::string, int> column_digits{};  ///< by column name, where they differ
+  std::map<std::string, std::string> names{};  ///< shown instead of the column's name
+  std::map<std::string, std::string> units{};  ///< shown in another unit of the same dimension
   std::map<std::string, std::function<Tone(double)>> number_tone{};            ///< by column name
   std::map<std::string, std::function<Tone(const std::string&)>> text_tone{};  ///< by column name
-  std::vector<std::string> columns{};                   ///< which and in which order; empty: all
-  bool verdicts = true;                                 ///< verdict_tone on text columns without a rule
+  std::vector<std::string> columns{};  ///< which and in which order; empty: all
+  bool verdicts = true;                ///< verdict_tone on text columns without a rule
 };
 
 /// A data table as a grid; units go to the header: "RMSE [N m]".
@@ -50,11 +51,13 @@ Grid make_grid(const data::Table& table, const GridOptions& options = {});
 
 // ---------------------------------------------------------------- plots
 
-/// A signal over its own clock [s], converted to `unit` ("" keeps the stored one; "deg" for rad, "µV" for V, ...).
+/// A signal over its own clock [s], converted to `unit` ("" keeps the stored one; "deg" for rad, "µV" for V,
+/// ...).
 Series make_series(const data::Signal& signal, const std::string& label, const std::string& unit = "",
                    Style style = Style::line);
 
-/// Time series of one quantity: x is "time [s]", y is `quantity_name [unit]`. Labels are muscle names, else signal names.
+/// Time series of one quantity: x is "time [s]", y is `quantity_name [unit]`. Labels are muscle names, else
+/// signal names.
 Plot make_time_plot(const std::string& title, const std::string& quantity_name,
                     std::span<const data::Signal* const> signals, const std::string& unit = "");
 
@@ -71,10 +74,11 @@ struct Pair {
 struct AgreementFigures {
   std::size_t frames = 0;
   double rmse = 0.0, mean_absolute = 0.0, largest = 0.0;  ///< in the unit of the values
-  double nrmse = 0.0;       ///< rmse / (largest - smallest measured)
-  double r_squared = 0.0;   ///< 1 - sum residual^2 / sum (measured - mean)^2: negative when worse than the mean
-  double bias = 0.0;        ///< mean residual
-  double deviation = 0.0;   ///< standard deviation of the residual, n - 1
+  double nrmse = 0.0;                                     ///< rmse / (largest - smallest measured)
+  double r_squared =
+      0.0;            ///< 1 - sum residual^2 / sum (measured - mean)^2: negative when worse than the mean
+  double bias = 0.0;  ///< mean residual
+  double deviation = 0.0;  ///< standard deviation of the residual, n - 1
 };
 
 /// Needs 2 frames with both values finite and measured values that vary: InputError("no-common-frames"),
@@ -86,8 +90,8 @@ Plot make_agreement_plot(const std::string& title, const Pair& pair);
 /// Modelled against measured, equal axes, identity line.
 Plot make_scatter_plot(const std::string& title, const Pair& pair);
 /// Difference against mean with bias and limits of agreement, bias +- 1.96 sd (Bland & Altman 1986,
-/// doi:10.1016/S0140-6736(86)90837-8). Frames of one recording depend on each other, so the limits describe these
-/// frames; the note says so.
+/// doi:10.1016/S0140-6736(86)90837-8). Frames of one recording depend on each other, so the limits describe
+/// these frames; the note says so.
 Plot make_bland_altman_plot(const std::string& title, const Pair& pair);
 
 }  // namespace brachium::pipelines::report

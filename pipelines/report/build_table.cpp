@@ -28,7 +28,8 @@ std::vector<Cell> number_cells(const data::Column& column, const GridOptions& op
   std::vector<double> values = std::get<std::vector<double>>(column.values);
   const auto* rule = find(options.number_tone, column.name);
   std::vector<Tone> tones;
-  for (const double v : values) tones.push_back(rule ? (*rule)(v) : Tone::plain);  // rules speak of stored units
+  for (const double v : values)
+    tones.push_back(rule ? (*rule)(v) : Tone::plain);  // rules speak of stored units
   if (const auto* unit = find(options.units, column.name)) {
     for (double& v : values) v = data::convert(v, column.unit, *unit);
   }
@@ -36,7 +37,8 @@ std::vector<Cell> number_cells(const data::Column& column, const GridOptions& op
   const bool whole = !own && all_integers(values);
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::string text = whole ? fixed(values[i], 0) : significant(values[i], own ? *own : options.digits);
+    const std::string text =
+        whole ? fixed(values[i], 0) : significant(values[i], own ? *own : options.digits);
     cells.push_back({.text = text, .tone = tones[i], .numeric = true});
   }
   return cells;
@@ -46,7 +48,9 @@ std::vector<Cell> text_cells(const data::Column& column, const GridOptions& opti
   const auto* rule = find(options.text_tone, column.name);
   std::vector<Cell> cells;
   for (const std::string& text : std::get<std::vector<std::string>>(column.values)) {
-    cells.push_back(make_text_cell(text, rule ? (*rule)(text) : options.verdicts ? verdict_tone(text) : Tone::plain));
+    cells.push_back(make_text_cell(text, rule               ? (*rule)(text)
+                                         : options.verdicts ? verdict_tone(text)
+                                                            : Tone::plain));
   }
   return cells;
 }

@@ -48,7 +48,8 @@ class ChainPicture {
     for (const ChainBox& box : layout_.boxes) {
       double widest = text_width(box.name, 14.0);
       if (box.node) {
-        widest = std::max({widest, text_width(box.node->run, 12.0), text_width(status_text(*box.node), 12.0)});
+        widest =
+            std::max({widest, text_width(box.node->run, 12.0), text_width(status_text(*box.node), 12.0)});
       }
       box_width_ = std::max(box_width_, widest + 26.0);
     }
@@ -58,7 +59,8 @@ class ChainPicture {
   std::string draw() const {
     const At size = extent();
     std::string out = fmt::format(
-        "<div class=\"scroll\"><svg class=\"chain\" role=\"img\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+        "<div class=\"scroll\"><svg class=\"chain\" role=\"img\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+        "height=\"{1}\" "
         "style=\"--w:{2}px\"><title>The chain of stages</title><desc>{3}</desc>",
         pixels(size.x), pixels(size.y), pixels(kLeastScale * size.x), escape(description()));
     for (const ChainEdge& edge : layout_.edges) out += arrow(edge);
@@ -73,7 +75,8 @@ class ChainPicture {
   At extent() const {
     const double along = (layout_.layers - 1) * along_pitch() + (across_ ? box_width_ : kBoxHeight);
     const double crosswise = layout_.extent * across_pitch() + (across_ ? kBoxHeight : box_width_);
-    return across_ ? At{along + 2 * kMargin, crosswise + 2 * kMargin} : At{crosswise + 2 * kMargin, along + 2 * kMargin};
+    return across_ ? At{along + 2 * kMargin, crosswise + 2 * kMargin}
+                   : At{crosswise + 2 * kMargin, along + 2 * kMargin};
   }
 
   At centre(double position, int layer) const {
@@ -104,8 +107,8 @@ class ChainPicture {
       const At b = point(k, k == last ? -half_to : -half);
       const At c1 = across_ ? At{(pen.x + b.x) / 2.0, pen.y} : At{pen.x, (pen.y + b.y) / 2.0};
       const At c2 = across_ ? At{(pen.x + b.x) / 2.0, b.y} : At{b.x, (pen.y + b.y) / 2.0};
-      d += "C" + pixels(c1.x) + " " + pixels(c1.y) + " " + pixels(c2.x) + " " + pixels(c2.y) + " " + pixels(b.x) + " " +
-           pixels(b.y);
+      d += "C" + pixels(c1.x) + " " + pixels(c1.y) + " " + pixels(c2.x) + " " + pixels(c2.y) + " " +
+           pixels(b.x) + " " + pixels(b.y);
       pen = b;
       if (k < last) {
         pen = point(k, half);
@@ -113,9 +116,10 @@ class ChainPicture {
       }
     }
     const At tip = pen;
-    const std::string head =
-        across_ ? "M" + pixels(tip.x) + " " + pixels(tip.y - 4.5) + "l" + pixels(kArrow) + " 4.5l" + pixels(-kArrow) + " 4.5z"
-                : "M" + pixels(tip.x - 4.5) + " " + pixels(tip.y) + "l4.5 " + pixels(kArrow) + "l4.5 " + pixels(-kArrow) + "z";
+    const std::string head = across_ ? "M" + pixels(tip.x) + " " + pixels(tip.y - 4.5) + "l" +
+                                           pixels(kArrow) + " 4.5l" + pixels(-kArrow) + " 4.5z"
+                                     : "M" + pixels(tip.x - 4.5) + " " + pixels(tip.y) + "l4.5 " +
+                                           pixels(kArrow) + "l4.5 " + pixels(-kArrow) + "z";
     return "<path class=\"edge\" d=\"" + d + "\"/><path class=\"head\" d=\"" + head + "\"/>";
   }
 
@@ -124,12 +128,13 @@ class ChainPicture {
     const double height = height_of(box);
     const std::string tone = box.node ? status_class(*box.node) : "input";
     const std::string dim = box.node && (box.node->status == "skipped") ? " dim" : "";
-    std::string out = fmt::format("<g class=\"box {}{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\"/>",
-                                  tone, dim, pixels(at.x - box_width_ / 2.0), pixels(at.y - height / 2.0),
-                                  pixels(box_width_), pixels(height), box.node ? "8" : "17");
+    std::string out =
+        fmt::format("<g class=\"box {}{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\"/>",
+                    tone, dim, pixels(at.x - box_width_ / 2.0), pixels(at.y - height / 2.0),
+                    pixels(box_width_), pixels(height), box.node ? "8" : "17");
     const auto text = [&](const char* kind, double dy, const std::string& content) {
-      out += fmt::format("<text class=\"{}\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text>", kind, pixels(at.x),
-                         pixels(at.y + dy), escape(content));
+      out += fmt::format("<text class=\"{}\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text>", kind,
+                         pixels(at.x), pixels(at.y + dy), escape(content));
     };
     if (box.node) {
       text("name", -12.0, box.name);
@@ -148,7 +153,8 @@ class ChainPicture {
       out += box.name + " (" + box.node->run + ", " + box.node->status;
       if (box.node->status == "done") out += ", " + duration(box.node->seconds);
       out += ")";
-      for (std::size_t k = 0; k < box.node->from.size(); ++k) out += (k == 0 ? " reads " : ", ") + box.node->from[k];
+      for (std::size_t k = 0; k < box.node->from.size(); ++k)
+        out += (k == 0 ? " reads " : ", ") + box.node->from[k];
       out += ". ";
     }
     return out;

@@ -1,5 +1,6 @@
 #pragma once
-/// The chain of stages as a picture: a box for each stage with its run, time and status, arrows from what it reads.
+/// The chain of stages as a picture: a box for each stage with its run, time and status, arrows from what it
+/// reads.
 
 #include <string>
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace brachium::pipelines::report {
 
-/// An SVG picture; empty for an empty chain. Short chains run from left to right, long ones from top to bottom.
-/// Errors: layout_chain's.
+/// An SVG picture; empty for an empty chain. Short chains run from left to right, long ones from top to
+/// bottom. Errors: layout_chain's.
 std::string draw_chain(const std::vector<ChainNode>& nodes);
 
 }  // namespace brachium::pipelines::report

@@ -51,7 +51,8 @@ Graph::Graph(ChainLayout& layout) : layers_(static_cast<std::size_t>(layout.laye
     }
     through_.push_back(std::move(path));
   }
-  for (std::size_t i = 0; i < points_.size(); ++i) layers_[static_cast<std::size_t>(points_[i].layer)].push_back(i);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    layers_[static_cast<std::size_t>(points_[i].layer)].push_back(i);
   for (auto& layer : layers_) {
     for (std::size_t k = 0; k < layer.size(); ++k) points_[layer[k]].position = static_cast<double>(k);
   }
@@ -89,8 +90,8 @@ void Graph::order() {
   for (auto& layer : layers_) sort_layer(layer, true);
 }
 
-/// Positions closest to the wanted ones, in least squares, that keep order and distance: pooling of neighbours that
-/// would come too close (isotonic regression, pool adjacent violators).
+/// Positions closest to the wanted ones, in least squares, that keep order and distance: pooling of
+/// neighbours that would come too close (isotonic regression, pool adjacent violators).
 void Graph::separate(const std::vector<std::size_t>& layer, const std::vector<double>& wanted) {
   struct Block {
     double sum;
@@ -138,7 +139,8 @@ void Graph::write_back(ChainLayout& layout) const {
     least = i == 0 ? points_[i].position : std::min(least, points_[i].position);
     largest = i == 0 ? points_[i].position : std::max(largest, points_[i].position);
   }
-  for (std::size_t i = 0; i < layout.boxes.size(); ++i) layout.boxes[i].position = points_[i].position - least;
+  for (std::size_t i = 0; i < layout.boxes.size(); ++i)
+    layout.boxes[i].position = points_[i].position - least;
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     for (const std::size_t i : through_[e]) layout.edges[e].positions.push_back(points_[i].position - least);
   }
@@ -189,7 +191,8 @@ ChainLayout layout_chain(const std::vector<ChainNode>& nodes) {
   assign_layers(layout);
   // A source stands right above its first reader, not in the first layer with a long arrow.
   for (std::size_t i = 0; i < layout.boxes.size(); ++i) {
-    const bool is_source = std::none_of(layout.edges.begin(), layout.edges.end(), [&](const ChainEdge& e) { return e.to == i; });
+    const bool is_source =
+        std::none_of(layout.edges.begin(), layout.edges.end(), [&](const ChainEdge& e) { return e.to == i; });
     int first_reader = layout.layers;
     for (const ChainEdge& edge : layout.edges) {
       if (edge.from == i) first_reader = std::min(first_reader, layout.boxes[edge.to].layer);

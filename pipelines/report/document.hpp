@@ -1,6 +1,6 @@
 #pragma once
-/// A report as plain values: sections of paragraphs, tables and plots. What draws it (html.hpp) knows nothing of
-/// muscles; what fills it (the stages) knows nothing of HTML.
+/// A report as plain values: sections of paragraphs, tables and plots. What draws it (html.hpp) knows nothing
+/// of muscles; what fills it (the stages) knows nothing of HTML.
 
 #include <optional>
 #include <string>
@@ -34,14 +34,14 @@ struct Grid {
 
 enum class Style { line, dashed, points, step, area, bars };
 
-/// One curve; x and y of equal length, NaN breaks a line. Long series are thinned by the drawing (min-max per pixel).
-/// Values are drawn as they are: convert to the unit of the axis label first (build.hpp does).
+/// One curve; x and y of equal length, NaN breaks a line. Long series are thinned by the drawing (min-max per
+/// pixel). Values are drawn as they are: convert to the unit of the axis label first (build.hpp does).
 struct Series {
   std::string label{};  ///< empty: not in the legend
   std::vector<double> x{}, y{};
   Style style = Style::line;
-  int colour = -1;                  ///< index into the palette; -1: next free
-  std::vector<double> y_lower{};    ///< with `area`: band between y_lower and y; empty: down to zero
+  int colour = -1;                ///< index into the palette; -1: next free
+  std::vector<double> y_lower{};  ///< with `area`: band between y_lower and y; empty: down to zero
 };
 
 /// A vertical line or a shaded interval with a label (onsets, held-out, excluded).
@@ -64,15 +64,15 @@ struct Plot {
   std::string x_label{}, y_label{};  ///< with units, e.g. "moment [N m]"
   std::vector<Series> series{};
   std::vector<Marker> markers{};
-  double height_px = 180.0;       ///< of the drawing area of this panel, without title, axes and legend
+  double height_px = 180.0;  ///< of the drawing area of this panel, without title, axes and legend
   bool log_x = false, log_y = false;
-  bool equal_axes = false;        ///< measured against modelled: one scale on both axes, identity line
+  bool equal_axes = false;  ///< measured against modelled: one scale on both axes, identity line
   std::optional<double> y_min{}, y_max{};
   std::optional<double> x_min{}, x_max{};
   std::vector<Level> levels{};
   std::vector<std::string> categories{};  ///< names at x = 0, 1, 2, ... instead of numbers (bars)
-  std::string note{};                     ///< one sentence under the plot; also read to those who cannot see it
-  std::vector<Plot> below{};              ///< further panels that share this plot's x axis (residuals); no nesting
+  std::string note{};         ///< one sentence under the plot; also read to those who cannot see it
+  std::vector<Plot> below{};  ///< further panels that share this plot's x axis (residuals); no nesting
 };
 
 /// Plots side by side, as many columns as fit; small multiples.
@@ -112,9 +112,9 @@ struct Document {
   std::vector<Paragraph> findings{};  ///< errors (bad), warnings, notes (plain); drawn in that order
   std::vector<ChainNode> chain{};
   std::vector<Section> sections{};
-  std::vector<std::string> methods{};                            ///< paragraphs
-  std::vector<std::pair<std::string, std::string>> provenance{}; ///< label, value
-  std::string subtitle{};                                        ///< under the title: session, subject, date
+  std::vector<std::string> methods{};                             ///< paragraphs
+  std::vector<std::pair<std::string, std::string>> provenance{};  ///< label, value
+  std::string subtitle{};                                         ///< under the title: session, subject, date
 };
 
 }  // namespace brachium::pipelines::report

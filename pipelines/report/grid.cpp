@@ -43,8 +43,8 @@ std::string draw_grid(const Grid& grid) {
         continue;
       }
       const bool heads_row = k == 0 && !row[k].numeric;
-      out += (heads_row ? "<th scope=\"row\"" : "<td") + class_attribute(row[k]) + ">" + inline_markup(row[k].text) +
-             (heads_row ? "</th>" : "</td>");
+      out += (heads_row ? "<th scope=\"row\"" : "<td") + class_attribute(row[k]) + ">" +
+             inline_markup(row[k].text) + (heads_row ? "</th>" : "</td>");
     }
     out += "</tr>\n";
   }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kPageWidth = 1052.0;  // [px] of the text, see style.cpp
 constexpr double kColumnGap = 26.0;
-constexpr std::size_t kFewNotes = 6;   // more are folded away
+constexpr std::size_t kFewNotes = 6;  // more are folded away
 
 /// Writes one page; anchors are unique within it.
 class Page {
@@ -55,15 +55,18 @@ void Page::heading(int level, const std::string& title, const std::string& ancho
 }
 
 void Page::head(const Document& document) {
-  out_ += "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
+  out_ +=
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
   out_ += escape(document.title);
   out_ += "</title>\n<style>";
   out_ += style_sheet();
   out_ += "</style>\n</head>\n<body>\n<header>\n<h1>" + inline_markup(document.title) + "</h1>\n";
-  if (!document.subtitle.empty()) out_ += "<p class=\"subtitle\">" + inline_markup(document.subtitle) + "</p>\n";
+  if (!document.subtitle.empty())
+    out_ += "<p class=\"subtitle\">" + inline_markup(document.subtitle) + "</p>\n";
   if (!document.verdict.empty()) {
-    out_ += "<p class=\"verdict " + tone_class(document.verdict_tone) + "\">" + inline_markup(document.verdict) + "</p>\n";
+    out_ += "<p class=\"verdict " + tone_class(document.verdict_tone) + "\">" +
+            inline_markup(document.verdict) + "</p>\n";
   }
   out_ += "</header>\n<main>\n";
 }
@@ -77,8 +80,8 @@ void Page::findings(const std::vector<Paragraph>& findings) {
     for (const Paragraph& finding : findings) {
       if (finding.tone != tone) continue;
       ++count;
-      items += "<li class=\"" + tone_class(tone) + "\"><b>" + word + "</b><span>" + inline_markup(finding.text) +
-               "</span></li>\n";
+      items += "<li class=\"" + tone_class(tone) + "\"><b>" + word + "</b><span>" +
+               inline_markup(finding.text) + "</span></li>\n";
     }
     if (count == 0) return count;
     const bool fold = count > kFewNotes && (tone == Tone::plain || tone == Tone::good);
@@ -138,24 +141,28 @@ void Page::section(const Section& section, const std::string& anchor, int level)
 }
 
 void Page::block(const Paragraph& paragraph, int) {
-  const std::string tone = paragraph.tone == Tone::plain ? "" : " class=\"" + tone_class(paragraph.tone) + "\"";
+  const std::string tone =
+      paragraph.tone == Tone::plain ? "" : " class=\"" + tone_class(paragraph.tone) + "\"";
   out_ += "<p" + tone + ">" + inline_markup(paragraph.text) + "</p>\n";
 }
 
-void Page::block(const Grid& grid, int) { out_ += draw_grid(grid); }
+void Page::block(const Grid& grid, int) {
+  out_ += draw_grid(grid);
+}
 
 void Page::block(const PlotRow& row, int) {
   if (row.plots.empty()) return;
   const std::size_t n = row.plots.size();
   const double automatic = n == 1 ? kPageWidth : n == 2 || n == 4 ? 400.0 : 300.0;
   const double least = std::clamp(row.min_width_px > 0.0 ? row.min_width_px : automatic, 120.0, kPageWidth);
-  const double columns = std::min(static_cast<double>(n), std::max(1.0, std::floor((kPageWidth + kColumnGap) / (least + kColumnGap))));
+  const double columns = std::min(
+      static_cast<double>(n), std::max(1.0, std::floor((kPageWidth + kColumnGap) / (least + kColumnGap))));
   PlotFrame frame{.width_px = (kPageWidth - (columns - 1.0) * kColumnGap) / columns};
   for (const Plot& plot : row.plots) frame.left_px = std::max(frame.left_px, left_padding(plot));
   const std::string legend = draw_legend(row.plots.front());
-  const bool common = n > 1 && !legend.empty() && std::all_of(row.plots.begin(), row.plots.end(), [&](const Plot& plot) {
-    return draw_legend(plot) == legend;
-  });
+  const bool common = n > 1 && !legend.empty() &&
+                      std::all_of(row.plots.begin(), row.plots.end(),
+                                  [&](const Plot& plot) { return draw_legend(plot) == legend; });
   frame.legend = !common;
   out_ += "<div class=\"row\" style=\"--w:" + (n == 1 ? "100%" : pixels(least) + "px") + "\">\n";
   if (common) out_ += "<div class=\"rowlegend\">" + legend + "</div>\n";
@@ -191,6 +198,8 @@ std::string Page::render(const Document& document) {
 
 }  // namespace
 
-std::string render_html(const Document& document) { return Page().render(document); }
+std::string render_html(const Document& document) {
+  return Page().render(document);
+}
 
 }  // namespace brachium::pipelines::report

@@ -13,8 +13,8 @@ namespace {
 std::string marker_swatch(const Marker& marker) {
   const std::string shape = marker.to ? "<path class=\"span " : "<path class=\"mark ";
   const std::string d = marker.to ? "M2 0h20v12h-20z" : "M12 0v12";
-  return "<svg class=\"k\" width=\"24\" height=\"12\" aria-hidden=\"true\">" + shape + tone_class(marker.tone) +
-         "\" d=\"" + d + "\"/></svg>";
+  return "<svg class=\"k\" width=\"24\" height=\"12\" aria-hidden=\"true\">" + shape +
+         tone_class(marker.tone) + "\" d=\"" + d + "\"/></svg>";
 }
 
 }  // namespace
@@ -48,10 +48,14 @@ bool is_repeated(const Marker& marker, const std::vector<Marker>& markers) {
 
 std::string tone_class(Tone tone) {
   switch (tone) {
-    case Tone::plain: return "plain";
-    case Tone::good: return "good";
-    case Tone::warning: return "warning";
-    case Tone::bad: return "bad";
+    case Tone::plain:
+      return "plain";
+    case Tone::good:
+      return "good";
+    case Tone::warning:
+      return "warning";
+    case Tone::bad:
+      return "bad";
   }
   return "plain";
 }
@@ -60,7 +64,8 @@ std::string draw_legend(const Plot& plot) {
   std::vector<std::string> entries;
   const auto add = [&](const std::string& swatch, const std::string& label) {
     const std::string entry = "<li>" + swatch + escape(typeset_label(label)) + "</li>";
-    if (!label.empty() && std::find(entries.begin(), entries.end(), entry) == entries.end()) entries.push_back(entry);
+    if (!label.empty() && std::find(entries.begin(), entries.end(), entry) == entries.end())
+      entries.push_back(entry);
   };
   const std::vector<int> colours = assign_colours(plot);
   std::size_t k = 0;
@@ -77,7 +82,8 @@ std::string draw_legend(const Plot& plot) {
     if (is_repeated(marker, plot.markers)) add(marker_swatch(marker), marker.label);
   }
   if (plot.equal_axes) {
-    add("<svg class=\"k\" width=\"24\" height=\"12\" aria-hidden=\"true\"><path class=\"mark plain\" d=\"M1 11L23 1\"/></svg>",
+    add("<svg class=\"k\" width=\"24\" height=\"12\" aria-hidden=\"true\"><path class=\"mark plain\" d=\"M1 "
+        "11L23 1\"/></svg>",
         "identity");
   }
   if (entries.empty() || (entries.size() == 1 && only == plot.title)) return "";

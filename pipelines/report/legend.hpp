@@ -8,8 +8,8 @@
 
 namespace brachium::pipelines::report {
 
-/// Colours of all series of a plot and the panels below it, in drawing order: given indices as they are, others the
-/// next index that no series was given.
+/// Colours of all series of a plot and the panels below it, in drawing order: given indices as they are,
+/// others the next index that no series was given.
 std::vector<int> assign_colours(const Plot& plot);
 
 /// A marker's name stands in the plot if it is the only one of that name, else in the legend.

@@ -1,5 +1,6 @@
 #pragma once
-/// Markers (vertical lines, shaded spans) and levels (horizontal lines) of a plot, and where their names stand.
+/// Markers (vertical lines, shaded spans) and levels (horizontal lines) of a plot, and where their names
+/// stand.
 
 #include <span>
 #include <string>
@@ -19,7 +20,8 @@ std::string draw_marker_area(const Marker& marker, const Panel& panel);  ///< be
 std::string draw_marker_line(const Marker& marker, const Panel& panel);  ///< in front of them
 std::string draw_level(const Level& level, const Panel& panel);
 
-/// Names of markers above the plot, in as few lines as keep them apart. Names that occur repeatedly are the legend's.
+/// Names of markers above the plot, in as few lines as keep them apart. Names that occur repeatedly are the
+/// legend's.
 struct MarkerLabels {
   struct Place {
     std::string text;

@@ -59,7 +59,9 @@ std::string quantity(double value, const std::string& unit, int digits) {
   return number + (set.starts_with("°") ? "" : "\u202F") + set;
 }
 
-std::string percent(double fraction, int digits) { return quantity(100.0 * fraction, "%", digits); }
+std::string percent(double fraction, int digits) {
+  return quantity(100.0 * fraction, "%", digits);
+}
 
 std::string duration(double seconds) {
   if (!std::isfinite(seconds)) return not_finite(seconds);
@@ -67,7 +69,8 @@ std::string duration(double seconds) {
   if (seconds < 9.95) return fmt::format("{:.1f}\u202Fs", seconds);
   if (seconds < 59.5) return fmt::format("{:.0f}\u202Fs", seconds);
   const double whole = std::round(seconds);
-  if (whole < 3600.0) return fmt::format("{:.0f}\u202Fmin {:.0f}\u202Fs", std::floor(whole / 60.0), std::fmod(whole, 60.0));
+  if (whole < 3600.0)
+    return fmt::format("{:.0f}\u202Fmin {:.0f}\u202Fs", std::floor(whole / 60.0), std::fmod(whole, 60.0));
   const double minutes = std::round(seconds / 60.0);
   return fmt::format("{:.0f}\u202Fh {:02.0f}\u202Fmin", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
 }
@@ -84,6 +87,8 @@ std::string tenths(long tenth) {
   return out;
 }
 
-std::string pixels(double length) { return tenths(std::lround(10.0 * length)); }
+std::string pixels(double length) {
+  return tenths(std::lround(10.0 * length));
+}
 
 }  // namespace brachium::pipelines::report

@@ -1,14 +1,14 @@
 #pragma once
-/// Numbers as a reader wants them: as many digits as they deserve, a true minus sign, powers of ten set as such.
-/// Independent of the locale.
+/// Numbers as a reader wants them: as many digits as they deserve, a true minus sign, powers of ten set as
+/// such. Independent of the locale.
 
 #include <string>
 
 namespace brachium::pipelines::report {
 
-/// `value` rounded to significant digits (1..17): 0.1235, 1.50, 12. Trailing zeros stay, as they are significant;
-/// digits before the decimal point are never replaced by zeros (123456 stays 123456).
-/// Outside [1e-4, 1e7) as 1.2×10⁻⁷. Not a number: "–"; infinite: "∞". Minus is U+2212.
+/// `value` rounded to significant digits (1..17): 0.1235, 1.50, 12. Trailing zeros stay, as they are
+/// significant; digits before the decimal point are never replaced by zeros (123456 stays 123456). Outside
+/// [1e-4, 1e7) as 1.2×10⁻⁷. Not a number: "–"; infinite: "∞". Minus is U+2212.
 std::string significant(double value, int digits = 4);
 
 /// `value` with a fixed number of decimals (0..17); never "−0".

@@ -1,5 +1,6 @@
 #pragma once
-/// The `d` attribute of an SVG path, written as short as tenths of a pixel allow: relative moves, no needless zeros.
+/// The `d` attribute of an SVG path, written as short as tenths of a pixel allow: relative moves, no needless
+/// zeros.
 
 #include <string>
 

@@ -27,30 +27,39 @@ constexpr int kTypicalIntervals = 6;    // of an x axis
 constexpr double kSquare = 300.0;       // [px] least side of a plot with equal axes
 
 void check(const Plot& plot) {
-  const auto fail = [&](const std::string& what) { throw std::logic_error("plot `" + plot.title + "`: " + what); };
+  const auto fail = [&](const std::string& what) {
+    throw std::logic_error("plot `" + plot.title + "`: " + what);
+  };
   for (const Series& series : plot.series) {
-    if (series.x.size() != series.y.size()) fail("series `" + series.label + "` has x and y of different length");
+    if (series.x.size() != series.y.size())
+      fail("series `" + series.label + "` has x and y of different length");
     if (!series.y_lower.empty() && series.y_lower.size() != series.y.size()) {
       fail("series `" + series.label + "` has y and y_lower of different length");
     }
   }
 }
 
-int y_intervals(double height) { return std::clamp(static_cast<int>(height / 26.0), 3, 7); }
+int y_intervals(double height) {
+  return std::clamp(static_cast<int>(height / 26.0), 3, 7);
+}
 
 /// Equal axes carry the same numbers.
 int x_intervals(const Plot& plot, double width) {
   return plot.equal_axes ? y_intervals(width) : std::clamp(static_cast<int>(width / 85.0), 3, 8);
 }
 
-double side(const Plot& plot) { return plot.equal_axes ? std::max(plot.height_px, kSquare) : plot.height_px; }
+double side(const Plot& plot) {
+  return plot.equal_axes ? std::max(plot.height_px, kSquare) : plot.height_px;
+}
 
 bool has(const Plot& plot, Style style) {
-  return std::any_of(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.style == style; });
+  return std::any_of(plot.series.begin(), plot.series.end(),
+                     [&](const Series& s) { return s.style == style; });
 }
 
 double x_margin(const Plot& plot) {
-  if (!plot.categories.empty() || has(plot, Style::bars)) return 0.0;  // the bars' own half width is added instead
+  if (!plot.categories.empty() || has(plot, Style::bars))
+    return 0.0;  // the bars' own half width is added instead
   return has(plot, Style::points) ? 0.03 : 0.0;
 }
 
@@ -89,7 +98,9 @@ Axis shared_x(const Plot& plot) {
   return axis;
 }
 
-Axis y_axis(const Plot& plot) { return make_axis(y_extent(plot), plot.log_y, 0.05, plot.y_min, plot.y_max); }
+Axis y_axis(const Plot& plot) {
+  return make_axis(y_extent(plot), plot.log_y, 0.05, plot.y_min, plot.y_max);
+}
 
 /// Both axes over the union of their ranges.
 void make_equal(Axis& x, Axis& y) {
@@ -97,13 +108,16 @@ void make_equal(Axis& x, Axis& y) {
   x.upper = y.upper = std::max(x.upper, y.upper);
 }
 
-std::string percent_of(double fraction) { return fixed(100.0 * fraction, 2) + "%"; }
+std::string percent_of(double fraction) {
+  return fixed(100.0 * fraction, 2) + "%";
+}
 
 /// Names of categories that do not fit beside each other are turned and need more height [px], else 0.
 double categories_height(const Plot& plot, double width) {
   double widest = 0.0;
   for (const std::string& name : plot.categories) widest = std::max(widest, text_width(name, kTickSize));
-  const double slot = std::min(width, kNarrowest) / std::max(1.0, static_cast<double>(plot.categories.size()));
+  const double slot =
+      std::min(width, kNarrowest) / std::max(1.0, static_cast<double>(plot.categories.size()));
   return widest + 4.0 > slot ? 0.6 * widest : 0.0;  // sine of the angle
 }
 
@@ -115,9 +129,10 @@ std::string x_ticks(const Plot& plot, const Axis& x, double width, double top) {
   };
   // A text that is turned needs a place of its own to turn about.
   const auto slanted = [&](double value, const std::string& label) {
-    out += "<svg x=\"" + percent_of(x.position(value)) + "\" y=\"" + pixels(top + 12.0) +
-           "\" overflow=\"visible\"><text class=\"t\" text-anchor=\"end\" transform=\"rotate(-35)\" x=\"3\">" +
-           escape(label) + "</text></svg>";
+    out +=
+        "<svg x=\"" + percent_of(x.position(value)) + "\" y=\"" + pixels(top + 12.0) +
+        "\" overflow=\"visible\"><text class=\"t\" text-anchor=\"end\" transform=\"rotate(-35)\" x=\"3\">" +
+        escape(label) + "</text></svg>";
   };
   if (plot.categories.empty()) {
     for (const Tick& tick : x.ticks(x_intervals(plot, width))) text(tick.value, tick.label);
@@ -131,8 +146,8 @@ std::string x_ticks(const Plot& plot, const Axis& x, double width, double top) {
 }
 
 /// Grid, bands, curves and lines of one panel, clipped to its frame, plus the numbers at its left.
-std::string draw_panel(const Plot& plot, const Plot& panel_plot, const Panel& panel, std::span<const int> colours,
-                       double top) {
+std::string draw_panel(const Plot& plot, const Plot& panel_plot, const Panel& panel,
+                       std::span<const int> colours, double top) {
   const double w = panel.width_px;
   const double h = panel.height_px;
   std::string grid;
@@ -145,8 +160,8 @@ std::string draw_panel(const Plot& plot, const Plot& panel_plot, const Panel& pa
   for (const Tick& tick : panel.y.ticks(y_intervals(h))) {
     const double y = panel.py(tick.value);
     grid += "M0 " + pixels(y) + "h" + pixels(w);
-    numbers += "<text class=\"t\" text-anchor=\"end\" x=\"-7\" y=\"" + pixels(top + y + 4.0) + "\">" + escape(tick.label) +
-               "</text>";
+    numbers += "<text class=\"t\" text-anchor=\"end\" x=\"-7\" y=\"" + pixels(top + y + 4.0) + "\">" +
+               escape(tick.label) + "</text>";
   }
   std::string out = "<svg class=\"panel\" y=\"" + pixels(top) + "\" width=\"100%\" height=\"" + pixels(h) +
                     "\" viewBox=\"0 0 " + pixels(w) + " " + pixels(h) + "\" preserveAspectRatio=\"none\"" +
@@ -172,7 +187,8 @@ std::string draw_panel(const Plot& plot, const Plot& panel_plot, const Panel& pa
   for (const Level& level : panel_plot.levels) out += draw_level(level, panel);
   out += "<path class=\"frame\" d=\"M0 0V" + pixels(h) + "H" + pixels(w) + "\"/></svg>";
   if (y_extent(panel_plot).empty()) {
-    out += "<text class=\"t\" text-anchor=\"middle\" x=\"50%\" y=\"" + pixels(top + h / 2.0) + "\">no data</text>";
+    out += "<text class=\"t\" text-anchor=\"middle\" x=\"50%\" y=\"" + pixels(top + h / 2.0) +
+           "\">no data</text>";
   }
   return out + numbers + draw_level_labels(panel_plot.levels, panel, top);
 }
@@ -195,8 +211,11 @@ std::string description(const Plot& plot, const Axis& x, const Axis& y) {
   for (const Series& series : plot.series) {
     if (!series.label.empty()) names += (names.empty() ? "" : ", ") + series.label;
   }
-  return typeset_label(plot.y_label) + " against " + typeset_label(plot.x_label) + (names.empty() ? "" : ": " + names) +
-         ". Shown from " + significant(x.lower, 3) + " to " + significant(x.upper, 3) + " and from " +
+  std::string out = typeset_label(plot.y_label);
+  if (!plot.x_label.empty()) out += " against " + typeset_label(plot.x_label);
+  if (!names.empty()) out += (out.empty() ? "" : ": ") + names;
+  if (!out.empty()) out += ". ";
+  return out + "Shown from " + significant(x.lower, 3) + " to " + significant(x.upper, 3) + " and from " +
          significant(y.lower, 3) + " to " + significant(y.upper, 3) + ".";
 }
 
@@ -223,7 +242,8 @@ std::string draw_plot(const Plot& plot, const PlotFrame& frame) {
   check(plot);
   for (const Plot& panel : plot.below) {
     check(panel);
-    if (!panel.below.empty()) throw std::logic_error("plot `" + plot.title + "`: a panel below has panels below it");
+    if (!panel.below.empty())
+      throw std::logic_error("plot `" + plot.title + "`: a panel below has panels below it");
   }
   const double left = std::max(frame.left_px, left_padding(plot));
   double right = std::max(kRightPadding, level_padding(plot.levels));
@@ -242,8 +262,8 @@ std::string draw_plot(const Plot& plot, const PlotFrame& frame) {
   const auto add_panel = [&](const Plot& panel_plot, const Axis& y, bool first) {
     const std::string y_label = typeset_label(panel_plot.y_label);
     if (!y_label.empty()) {
-      body += "<text class=\"yl\" x=\"" + pixels(-left) + "\" y=\"" + pixels(top + 11.0) + "\">" + escape(y_label) +
-              "</text>";
+      body += "<text class=\"yl\" x=\"" + pixels(-left) + "\" y=\"" + pixels(top + 11.0) + "\">" +
+              escape(y_label) + "</text>";
       top += kYLabelHeight;
     } else {
       top += 8.0;  // half of the highest number
@@ -253,7 +273,8 @@ std::string draw_plot(const Plot& plot, const PlotFrame& frame) {
       top += labels.lanes * kLaneHeight;
     }
     const Panel panel{.x = x, .y = y, .width_px = width, .height_px = side(panel_plot)};
-    body += draw_panel(plot, panel_plot, panel, std::span(colours).subspan(drawn, panel_plot.series.size()), top);
+    body +=
+        draw_panel(plot, panel_plot, panel, std::span(colours).subspan(drawn, panel_plot.series.size()), top);
     drawn += panel_plot.series.size();
     top += panel.height_px;
   };
@@ -274,13 +295,14 @@ std::string draw_plot(const Plot& plot, const PlotFrame& frame) {
   if (!plot.title.empty()) out += "<figcaption>" + inline_markup(plot.title) + "</figcaption>";
   if (frame.legend) out += draw_legend(plot);
   const std::string size = plot.equal_axes ? ";width:" + pixels(width + left + right) + "px" : "";
-  out += "<svg class=\"plot\" role=\"img\" height=\"" + pixels(top) + "\" style=\"padding:0 " + pixels(right) + "px 0 " +
-         pixels(left) + "px" + size + "\"><title>" + escape(plot.title.empty() ? plot.y_label : plot.title) +
-         "</title><desc>" + escape(description(plot, x, first_y)) + "</desc>" + body + "</svg>";
+  out += "<svg class=\"plot\" role=\"img\" height=\"" + pixels(top) + "\" style=\"padding:0 " +
+         pixels(right) + "px 0 " + pixels(left) + "px" + size + "\"><title>" +
+         escape(plot.title.empty() ? plot.y_label : plot.title) + "</title><desc>" +
+         escape(description(plot, x, first_y)) + "</desc>" + body + "</svg>";
   const std::string left_out = left_out_sentence(plot);
   if (!plot.note.empty() || !left_out.empty()) {
-    out += "<p class=\"note\">" + inline_markup(plot.note + (plot.note.empty() || left_out.empty() ? "" : " ") + left_out) +
-           "</p>";
+    out += "<p class=\"note\">" +
+           inline_markup(plot.note + (plot.note.empty() || left_out.empty() ? "" : " ") + left_out) + "</p>";
   }
   return out + "</figure>\n";
 }

@@ -1,6 +1,7 @@
 #pragma once
-/// A plot as a static picture. Its height and its lettering are fixed in pixels; its width is whatever the page gives:
-/// positions along x are fractions of the width, so that nothing shrinks on a narrow screen or on paper.
+/// A plot as a static picture. Its height and its lettering are fixed in pixels; its width is whatever the
+/// page gives: positions along x are fractions of the width, so that nothing shrinks on a narrow screen or on
+/// paper.
 
 #include <string>
 
@@ -11,8 +12,9 @@ namespace brachium::pipelines::report {
 /// What the page decides about a plot.
 struct PlotFrame {
   double width_px = 960.0;  ///< likely width, paddings included: how many ticks, how far a series is thinned
-  double left_px = 0.0;     ///< at least this much room for the numbers of the y axis, so that neighbours line up
-  bool legend = true;       ///< false: the row has one for all
+  double left_px =
+      0.0;             ///< at least this much room for the numbers of the y axis, so that neighbours line up
+  bool legend = true;  ///< false: the row has one for all
 };
 
 /// Room that the numbers of the y axes need [px].

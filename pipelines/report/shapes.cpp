@@ -15,7 +15,9 @@ constexpr double kDense = 3.0;            // samples kept for each pixel column
 constexpr std::size_t kManyPoints = 500;  // drawn smaller
 constexpr double kFar = 1e5;  // [px] what lies this far outside the panel may be drawn anywhere outside
 
-double bounded(double px) { return std::clamp(px, -kFar, kFar); }  // NaN stays NaN
+double bounded(double px) {
+  return std::clamp(px, -kFar, kFar);
+}  // NaN stays NaN
 
 struct Pixels {
   std::vector<double> x, y;
@@ -34,7 +36,8 @@ std::string element(const std::string& classes, const std::string& d) {
   return d.empty() ? "" : "<path class=\"" + classes + "\" d=\"" + d + "\"/>";
 }
 
-/// More than the eye can follow: a recording that fills its columns. Drawn lighter, so that what lies on it is seen.
+/// More than the eye can follow: a recording that fills its columns. Drawn lighter, so that what lies on it
+/// is seen.
 bool is_dense(const std::vector<std::size_t>& kept, const Panel& panel) {
   return static_cast<double>(kept.size()) > kDense * panel.width_px;
 }
@@ -137,8 +140,12 @@ std::string bars(const Pixels& at, const Panel& panel, int slot, int slots) {
 
 }  // namespace
 
-double Panel::px(double value) const { return bounded(width_px * x.position(value)); }
-double Panel::py(double value) const { return bounded(height_px * (1.0 - y.position(value))); }
+double Panel::px(double value) const {
+  return bounded(width_px * x.position(value));
+}
+double Panel::py(double value) const {
+  return bounded(height_px * (1.0 - y.position(value)));
+}
 
 std::string colour_class(int colour) {
   const int index = std::max(colour, 0);
@@ -155,11 +162,15 @@ std::string draw_series(const Series& series, int colour, const Panel& panel, in
     case Style::dashed:
     case Style::step: {
       const std::vector<std::size_t> kept = thin_line(at.x, at.y);
-      const std::string kind = series.style == Style::dashed ? "l d " : is_dense(kept, panel) ? "l dense " : "l ";
+      const std::string kind = series.style == Style::dashed ? "l d "
+                               : is_dense(kept, panel)       ? "l dense "
+                                                             : "l ";
       return element(kind + classes, line(at, kept, series.style == Style::step));
     }
-    case Style::points: return element((at.x.size() > kManyPoints ? "p many " : "p ") + classes, points(at));
-    case Style::bars: return element("a " + classes, bars(at, panel, bar_slot, bar_slots));
+    case Style::points:
+      return element((at.x.size() > kManyPoints ? "p many " : "p ") + classes, points(at));
+    case Style::bars:
+      return element("a " + classes, bars(at, panel, bar_slot, bar_slots));
     case Style::area: {
       std::vector<double> lower;
       const double base = panel.y.log ? panel.y.lower : 0.0;
@@ -176,12 +187,24 @@ std::string draw_swatch(Style style, int colour) {
   const std::string classes = colour_class(colour);
   std::string shape;
   switch (style) {
-    case Style::line: shape = element("l " + classes, "M1 6h22"); break;
-    case Style::dashed: shape = element("l d " + classes, "M1 6h22"); break;
-    case Style::step: shape = element("l " + classes, "M1 10h8v-7h7v4h7"); break;
-    case Style::points: shape = element("p " + classes, "M4 8h0M12 4h0M20 7h0"); break;
-    case Style::bars: shape = element("a " + classes, "M3 11v-6h5v6zM10 11v-10h5v10zM17 11v-4h5v4z"); break;
-    case Style::area: shape = element("b " + classes, "M1 2h22v8h-22z"); break;
+    case Style::line:
+      shape = element("l " + classes, "M1 6h22");
+      break;
+    case Style::dashed:
+      shape = element("l d " + classes, "M1 6h22");
+      break;
+    case Style::step:
+      shape = element("l " + classes, "M1 10h8v-7h7v4h7");
+      break;
+    case Style::points:
+      shape = element("p " + classes, "M4 8h0M12 4h0M20 7h0");
+      break;
+    case Style::bars:
+      shape = element("a " + classes, "M3 11v-6h5v6zM10 11v-10h5v10zM17 11v-4h5v4z");
+      break;
+    case Style::area:
+      shape = element("b " + classes, "M1 2h22v8h-22z");
+      break;
   }
   return "<svg class=\"k\" width=\"24\" height=\"12\" aria-hidden=\"true\">" + shape + "</svg>";
 }

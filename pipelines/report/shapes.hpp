@@ -24,7 +24,8 @@ inline constexpr int kColours = 8;
 /// CSS classes of a curve's colour and, beyond the first, its line style in print.
 std::string colour_class(int colour);
 
-/// The SVG elements of a series; `bar_slot` of `bar_slots`: which of several series of bars stands where in a group.
+/// The SVG elements of a series; `bar_slot` of `bar_slots`: which of several series of bars stands where in a
+/// group.
 std::string draw_series(const Series& series, int colour, const Panel& panel, int bar_slot, int bar_slots);
 
 /// The small picture of a series in a legend, a complete <svg>.

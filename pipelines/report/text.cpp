@@ -34,8 +34,8 @@ bool starts_with_at(std::string_view text, std::size_t i, std::string_view prefi
   return text.substr(i, prefix.size()) == prefix;
 }
 
-/// End of a link that starts at `i`: up to white space or a quote, without the punctuation that ends a sentence and
-/// without a closing bracket that was never opened inside (DOIs may contain brackets).
+/// End of a link that starts at `i`: up to white space or a quote, without the punctuation that ends a
+/// sentence and without a closing bracket that was never opened inside (DOIs may contain brackets).
 std::size_t link_end(std::string_view text, std::size_t i) {
   std::size_t end = i;
   int open = 0;
@@ -75,11 +75,21 @@ std::string escape(std::string_view text) {
     }
     const char c = text[i++];
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
       default: {
         const bool control = (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
         if (control) {
@@ -96,13 +106,14 @@ std::string escape(std::string_view text) {
 std::string bind_units(std::string_view text) {
   // Longer symbols first: "N m" before "N".
   static constexpr std::array<std::string_view, 26> kUnits = {
-      "N m/rad", "N m", "rad/s", "deg/s", "m/s^2", "m/s", "µV", "uV", "mV", "Hz", "kHz", "ms", "min", "kg", "mm", "cm", "rad",
-      "deg", "MB", "lb", "dB", "%", "N", "s", "m", "V"};
+      "N m/rad", "N m", "rad/s", "deg/s", "m/s^2", "m/s", "µV", "uV", "mV", "Hz", "kHz", "ms", "min",
+      "kg",      "mm",  "cm",    "rad",   "deg",   "MB",  "lb", "dB", "%",  "N",  "s",   "m",  "V"};
   const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     out += text[i];
-    const bool after_number = std::isdigit(static_cast<unsigned char>(text[i])) && i + 2 < text.size() && text[i + 1] == ' ';
+    const bool after_number =
+        std::isdigit(static_cast<unsigned char>(text[i])) && i + 2 < text.size() && text[i + 1] == ' ';
     if (!after_number) continue;
     for (const std::string_view unit : kUnits) {
       const std::size_t end = i + 2 + unit.size();
@@ -160,13 +171,16 @@ std::string typeset_unit(std::string_view unit) {
   for (std::size_t i = 0; i < unit.size(); ++i) {
     const char c = unit[i];
     if (c == '^') {
-      for (++i; i < unit.size() && (std::isdigit(static_cast<unsigned char>(unit[i])) || unit[i] == '-'); ++i) {
-        out += unit[i] == '-' ? std::string_view("⁻") : kSuperscripts[static_cast<std::size_t>(unit[i] - '0')];
+      for (++i; i < unit.size() && (std::isdigit(static_cast<unsigned char>(unit[i])) || unit[i] == '-');
+           ++i) {
+        out +=
+            unit[i] == '-' ? std::string_view("⁻") : kSuperscripts[static_cast<std::size_t>(unit[i] - '0')];
       }
       --i;
     } else if (c == ' ' || c == '*') {
       out += "\u202F";  // narrow no-break space
-    } else if (c == 'u' && i + 1 < unit.size() && (unit[i + 1] == 'V' || unit[i + 1] == 's' || unit[i + 1] == 'm')) {
+    } else if (c == 'u' && i + 1 < unit.size() &&
+               (unit[i + 1] == 'V' || unit[i + 1] == 's' || unit[i + 1] == 'm')) {
       out += "µ";
     } else {
       out += c;

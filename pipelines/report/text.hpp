@@ -1,24 +1,26 @@
 #pragma once
-/// Text on its way into HTML and SVG: escaped, with code spans, links and typeset units; numbers as a reader wants them.
+/// Text on its way into HTML and SVG: escaped, with code spans, links and typeset units; numbers as a reader
+/// wants them.
 
 #include <string>
 #include <string_view>
 
 namespace brachium::pipelines::report {
 
-/// `text` for element content and attribute values: & < > " ' become references, control characters (which neither
-/// HTML nor XML admits) and bytes that are not UTF-8 become U+FFFD.
+/// `text` for element content and attribute values: & < > " ' become references, control characters (which
+/// neither HTML nor XML admits) and bytes that are not UTF-8 become U+FFFD.
 std::string escape(std::string_view text);
 
-/// Running text as HTML: escaped, `code` in backticks, doi:10... and https://... as links; a number and its unit, "1.02
-/// N m" or "30 %", stay on one line. What stands in backticks is left as it is.
+/// Running text as HTML: escaped, `code` in backticks, doi:10... and https://... as links; a number and its
+/// unit, "1.02 N m" or "30 %", stay on one line. What stands in backticks is left as it is.
 std::string inline_markup(std::string_view text);
 
 /// `text` with narrow no-break spaces between a number and a unit, and inside the unit. Not escaped.
 std::string bind_units(std::string_view text);
 
-/// Units as one sets them: "N m" with a narrow no-break space, "m/s^2" with a superscript, "uV" as µV, "deg" as °.
-/// The unit 1 is left out. Only inside the brackets at the end of a label, "moment [N m]"; the rest is left as it is. Not escaped.
+/// Units as one sets them: "N m" with a narrow no-break space, "m/s^2" with a superscript, "uV" as µV, "deg"
+/// as °. The unit 1 is left out. Only inside the brackets at the end of a label, "moment [N m]"; the rest is
+/// left as it is. Not escaped.
 std::string typeset_label(std::string_view label);
 
 /// A unit alone, set as in typeset_label.

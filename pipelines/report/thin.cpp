@@ -11,7 +11,8 @@ namespace brachium::pipelines::report {
 namespace {
 
 /// First, last, lowest and highest sample of [begin, end), each once, in order.
-void keep_four(std::span<const double> y, std::size_t begin, std::size_t end, std::vector<std::size_t>& kept) {
+void keep_four(std::span<const double> y, std::size_t begin, std::size_t end,
+               std::vector<std::size_t>& kept) {
   std::size_t low = begin;
   std::size_t high = begin;
   for (std::size_t i = begin; i < end; ++i) {
@@ -26,7 +27,8 @@ void keep_four(std::span<const double> y, std::size_t begin, std::size_t end, st
 
 }  // namespace
 
-std::vector<std::size_t> thin_line(std::span<const double> x_px, std::span<const double> y_px, double column_px) {
+std::vector<std::size_t> thin_line(std::span<const double> x_px, std::span<const double> y_px,
+                                   double column_px) {
   const auto broken = [&](std::size_t i) { return std::isnan(x_px[i]) || std::isnan(y_px[i]); };
   const auto column = [&](std::size_t i) { return std::floor(x_px[i] / column_px); };
   std::vector<std::size_t> kept;
@@ -44,7 +46,8 @@ std::vector<std::size_t> thin_line(std::span<const double> x_px, std::span<const
   return kept;
 }
 
-std::vector<std::size_t> thin_points(std::span<const double> x_px, std::span<const double> y_px, double cell_px) {
+std::vector<std::size_t> thin_points(std::span<const double> x_px, std::span<const double> y_px,
+                                     double cell_px) {
   std::set<std::pair<std::int64_t, std::int64_t>> taken;
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < x_px.size(); ++i) {

@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // of a step: a multiple at the very end of the axis still counts
 
-int floor_log10(double value) { return static_cast<int>(std::floor(std::log10(value) + kRounding)); }
+int floor_log10(double value) {
+  return static_cast<int>(std::floor(std::log10(value) + kRounding));
+}
 
 /// Text of a multiple of `step` on an axis whose largest number is `largest`.
 std::string label(double value, double step, double largest) {

@@ -14,7 +14,8 @@ namespace {
 
 using namespace pipelines::report;
 
-const std::vector<std::string> kMuscles = {"BIClong", "BICshort", "BRA", "BRD", "TRIlong", "TRIlat", "TRImed"};
+const std::vector<std::string> kMuscles = {"BIClong", "BICshort", "BRA",   "BRD",
+                                           "TRIlong", "TRIlat",   "TRImed"};
 constexpr double kRateRaw = 2000.0;
 constexpr double kRate = 200.0;
 constexpr double kDuration = 30.0;
@@ -26,9 +27,15 @@ double excitation(double t, int muscle, int trial) {
 
 data::Signal raw_signal(int muscle, int trial) {
   data::Signal signal;
-  signal.info = {.name = kMuscles[static_cast<std::size_t>(muscle)] + ".raw", .quantity = data::Quantity::emg, .unit = "V",
-                 .rate_hz = kRateRaw, .start_time_s = 0.0, .count = static_cast<std::size_t>(kDuration * kRateRaw),
-                 .muscle = kMuscles[static_cast<std::size_t>(muscle)], .coordinate = "", .attributes = {}};
+  signal.info = {.name = kMuscles[static_cast<std::size_t>(muscle)] + ".raw",
+                 .quantity = data::Quantity::emg,
+                 .unit = "V",
+                 .rate_hz = kRateRaw,
+                 .start_time_s = 0.0,
+                 .count = static_cast<std::size_t>(kDuration * kRateRaw),
+                 .muscle = kMuscles[static_cast<std::size_t>(muscle)],
+                 .coordinate = "",
+                 .attributes = {}};
   std::mt19937 generator(static_cast<unsigned>(100 * trial + muscle));
   for (std::size_t i = 0; i < signal.info.count; ++i) {
     const double noise = static_cast<double>(generator()) / 2147483648.0 - 1.0;
@@ -50,26 +57,31 @@ Series series_of(const std::string& label, Style style, int muscle, int trial, d
 Section quality() {
   Section section{.title = "EMG quality"};
   section.blocks.push_back(Paragraph{
-      .text = "Every channel is judged on the raw recording, before any filter. Thresholds are the options of stage "
+      .text = "Every channel is judged on the raw recording, before any filter. Thresholds are the options "
+              "of stage "
               "`quality`; a channel that fails is excluded by name (doi:10.1016/j.jelekin.2018.10.002)."});
-  data::Table table{.title = "Channels, worst trial",
-                    .columns = {{"channel", "", std::vector<std::string>(kMuscles)},
-                                {"clipped samples", "1", std::vector<double>{0, 0, 12, 0, 0, 0, 3}},
-                                {"signal to noise", "1", std::vector<double>{31.2, 28.75, 22.1, 19.4, 9.8, 25.3, 4.1}},
-                                {"baseline", "V", std::vector<double>{1.2e-6, 1.5e-6, 2.2e-6, 1.1e-6, 9e-6, 1.9e-6, 2.1e-5}},
-                                {"median frequency", "Hz", std::vector<double>{81.2, 77.5, 69.9, 92.0, 66.1, 71.4, 118.3}},
-                                {"verdict", "", std::vector<std::string>{"ok", "ok", "ok", "ok", "warning: line hum", "ok",
-                                                                         "failed: signal to noise"}}}};
-  section.blocks.push_back(
-      make_grid(table, {.digits = 3,
-                        .units = {{"baseline", "uV"}},
-                        .number_tone = {{"signal to noise", [](double v) { return threshold_tone(v, 15.0, 6.0); }}}}));
+  data::Table table{
+      .title = "Channels, worst trial",
+      .columns = {
+          {"channel", "", std::vector<std::string>(kMuscles)},
+          {"clipped samples", "1", std::vector<double>{0, 0, 12, 0, 0, 0, 3}},
+          {"signal to noise", "1", std::vector<double>{31.2, 28.75, 22.1, 19.4, 9.8, 25.3, 4.1}},
+          {"baseline", "V", std::vector<double>{1.2e-6, 1.5e-6, 2.2e-6, 1.1e-6, 9e-6, 1.9e-6, 2.1e-5}},
+          {"median frequency", "Hz", std::vector<double>{81.2, 77.5, 69.9, 92.0, 66.1, 71.4, 118.3}},
+          {"verdict", "",
+           std::vector<std::string>{"ok", "ok", "ok", "ok", "warning: line hum", "ok",
+                                    "failed: signal to noise"}}}};
+  section.blocks.push_back(make_grid(
+      table, {.digits = 3,
+              .units = {{"baseline", "uV"}},
+              .number_tone = {{"signal to noise", [](double v) { return threshold_tone(v, 15.0, 6.0); }}}}));
   return section;
 }
 
 Section conditioning() {
   Section section{.title = "Conditioning, step by step"};
-  section.blocks.push_back(Paragraph{.text = "Each step of one channel and trial. The others are folded below."});
+  section.blocks.push_back(
+      Paragraph{.text = "Each step of one channel and trial. The others are folded below."});
   Plot steps{.title = "BIClong, trial curl-1", .x_label = "time [s]", .y_label = "raw [uV]"};
   steps.height_px = 90.0;
   steps.series.push_back(make_series(raw_signal(0, 1), "raw", "uV"));
@@ -87,7 +99,8 @@ Section conditioning() {
                    {.from = 8.6, .label = "offset", .tone = Tone::good},
                    {.from = 20.0, .to = 25.0, .label = "held out", .tone = Tone::warning},
                    {.from = 25.4, .label = "artefact", .tone = Tone::bad}};
-  steps.note = "High-pass 30 Hz, rectified, low-pass 6 Hz, zero lag; the first 0.6 s are lost to the filter's edge.";
+  steps.note =
+      "High-pass 30 Hz, rectified, low-pass 6 Hz, zero lag; the first 0.6 s are lost to the filter's edge.";
   section.blocks.push_back(PlotRow{.plots = {steps}});
   for (int trial = 1; trial <= 6; ++trial) {
     PlotRow row;
@@ -98,7 +111,8 @@ Section conditioning() {
       plot.series.push_back(series_of("envelope", Style::line, m, trial, 0.0, 400.0));
       row.plots.push_back(plot);
     }
-    section.blocks.push_back(Details{.summary = "Trial curl-" + std::to_string(trial), .content = {{.title = "", .anchor = "", .blocks = {row}}}});
+    section.blocks.push_back(Details{.summary = "Trial curl-" + std::to_string(trial),
+                                     .content = {{.title = "", .anchor = "", .blocks = {row}}}});
   }
   return section;
 }
@@ -127,12 +141,14 @@ Section activations() {
 
 Section calibration() {
   Section section{.title = "Calibration"};
-  Grid grid{.caption = "Parameters", .header = {"muscle", "parameter", "start", "fitted", "±", "lower", "upper", "verdict"}};
-  const auto row = [&](const char* muscle, const char* parameter, double start, double fitted, double width, double lower,
-                       double upper, const std::string& verdict) {
-    grid.rows.push_back({make_text_cell(muscle), make_text_cell(std::string("`") + parameter + "`"), make_number_cell(start),
-                         make_number_cell(fitted), make_number_cell(width, 2), make_number_cell(lower),
-                         make_number_cell(upper), make_text_cell(verdict, verdict_tone(verdict))});
+  Grid grid{.caption = "Parameters",
+            .header = {"muscle", "parameter", "start", "fitted", "±", "lower", "upper", "verdict"}};
+  const auto row = [&](const char* muscle, const char* parameter, double start, double fitted, double width,
+                       double lower, double upper, const std::string& verdict) {
+    grid.rows.push_back({make_text_cell(muscle), make_text_cell(std::string("`") + parameter + "`"),
+                         make_number_cell(start), make_number_cell(fitted), make_number_cell(width, 2),
+                         make_number_cell(lower), make_number_cell(upper),
+                         make_text_cell(verdict, verdict_tone(verdict))});
   };
   row("BIClong", "optimal_fibre_length_m", 0.1157, 0.1219, 0.0026, 0.0984, 0.133, "identified (± 2.1 %)");
   row("BRA", "tendon_slack_length_m", 0.0535, 0.0615, 0.0, 0.0455, 0.0615, "AT UPPER BOUND");
@@ -144,8 +160,12 @@ Section calibration() {
   Plot bars{.title = "Strength factors", .y_label = "strength [1]"};
   bars.categories = kMuscles;
   bars.categories[5] = "TRIlat (excluded)";
-  bars.series = {{.label = "start", .x = {0, 1, 2, 3, 4, 5, 6}, .y = {1, 1, 1, 1, 1, 1, 1}, .style = Style::bars},
-                 {.label = "fitted", .x = {0, 1, 2, 3, 4, 5, 6}, .y = {1.2, .9, 1.5, 1.1, .7, .85, 1}, .style = Style::bars}};
+  bars.series = {
+      {.label = "start", .x = {0, 1, 2, 3, 4, 5, 6}, .y = {1, 1, 1, 1, 1, 1, 1}, .style = Style::bars},
+      {.label = "fitted",
+       .x = {0, 1, 2, 3, 4, 5, 6},
+       .y = {1.2, .9, 1.5, 1.1, .7, .85, 1},
+       .style = Style::bars}};
   bars.levels = {{.y = 1.5, .label = "upper bound", .tone = Tone::warning}};
   Plot cost{.title = "Cost", .x_label = "evaluation", .y_label = "cost [N^2 m^2]"};
   cost.log_y = true;
@@ -164,7 +184,8 @@ Section calibration() {
 
 Section moments() {
   Section section{.title = "Measured and modelled elbow moment"};
-  section.blocks.push_back(Paragraph{.text = "Trial curl-6 was not seen by the calibration.", .tone = Tone::good});
+  section.blocks.push_back(
+      Paragraph{.text = "Trial curl-6 was not seen by the calibration.", .tone = Tone::good});
   std::vector<double> time, measured, modelled;
   std::mt19937 generator(7);
   for (int i = 0; i < static_cast<int>(kDuration * kRate); ++i) {
@@ -174,8 +195,10 @@ Section moments() {
     modelled.push_back(measured.back() * 0.93 + 0.9 * std::sin(3.1 * t) +
                        0.4 * (static_cast<double>(generator()) / 2147483648.0 - 1.0));
   }
-  for (int i = 3000; i < 3200; ++i) measured[static_cast<std::size_t>(i)] = std::numeric_limits<double>::quiet_NaN();
-  const Pair pair{.time_s = time, .measured = measured, .modelled = modelled, .quantity = "elbow moment", .unit = "N m"};
+  for (int i = 3000; i < 3200; ++i)
+    measured[static_cast<std::size_t>(i)] = std::numeric_limits<double>::quiet_NaN();
+  const Pair pair{
+      .time_s = time, .measured = measured, .modelled = modelled, .quantity = "elbow moment", .unit = "N m"};
   Plot agreement = make_agreement_plot("Trial curl-6 (held out)", pair);
   Series band{.label = "moment from assumed masses, ± 10 %", .x = time, .style = Style::area, .colour = 6};
   for (const double m : measured) {
@@ -207,31 +230,67 @@ Document sample_report() {
   Document document;
   document.title = "Elbow curls, subject 1";
   document.subtitle = "6 trials, 7 muscles, session `s01.h5`, scene `elbow.toml`";
-  document.verdict = "Held-out elbow moment: R² 0.86, RMSE 1.02 N m (linear baseline 1.61 N m); 1 parameter not identified.";
+  document.verdict =
+      "Held-out elbow moment: R² 0.86, RMSE 1.02 N m (linear baseline 1.61 N m); 1 parameter not identified.";
   document.verdict_tone = Tone::warning;
   document.findings = {
-      {.text = "channel `TRImed`: signal to noise 4.1 is below 6 in every trial; excluded by name (`low-snr`)", .tone = Tone::bad},
+      {.text =
+           "channel `TRImed`: signal to noise 4.1 is below 6 in every trial; excluded by name (`low-snr`)",
+       .tone = Tone::bad},
       {.text = "`tendon_slack_length_m` of `BRA` lies at its upper bound 0.0615 m", .tone = Tone::warning},
       {.text = "moment signal resampled from 100 Hz to 200 Hz, band-limited", .tone = Tone::plain}};
   document.chain = {
       {.name = "quality", .run = "emg.quality", .seconds = 0.41, .status = "done", .from = {"session"}},
-      {.name = "excitation", .run = "emg.envelope", .seconds = 1.32, .status = "done", .tone = Tone::warning, .from = {"session", "quality"}},
-      {.name = "moment", .run = "limb.inverse_dynamics", .seconds = 0.22, .status = "reused", .from = {"session"}},
-      {.name = "subject", .run = "optimise.calibrate", .seconds = 14.8, .status = "done", .from = {"excitation", "moment"}},
-      {.name = "activation", .run = "emg.activation", .seconds = 0.09, .status = "done", .from = {"excitation", "subject"}},
-      {.name = "forces", .run = "hill.moment", .seconds = 0.31, .status = "done", .from = {"activation", "subject"}},
-      {.name = "cross", .run = "optimise.cross_validate", .seconds = 75.2, .status = "failed", .from = {"excitation", "moment"}},
-      {.name = "verdict", .run = "pipelines.compare", .seconds = 0.05, .status = "skipped", .from = {"moment", "forces", "cross"}}};
+      {.name = "excitation",
+       .run = "emg.envelope",
+       .seconds = 1.32,
+       .status = "done",
+       .tone = Tone::warning,
+       .from = {"session", "quality"}},
+      {.name = "moment",
+       .run = "limb.inverse_dynamics",
+       .seconds = 0.22,
+       .status = "reused",
+       .from = {"session"}},
+      {.name = "subject",
+       .run = "optimise.calibrate",
+       .seconds = 14.8,
+       .status = "done",
+       .from = {"excitation", "moment"}},
+      {.name = "activation",
+       .run = "emg.activation",
+       .seconds = 0.09,
+       .status = "done",
+       .from = {"excitation", "subject"}},
+      {.name = "forces",
+       .run = "hill.moment",
+       .seconds = 0.31,
+       .status = "done",
+       .from = {"activation", "subject"}},
+      {.name = "cross",
+       .run = "optimise.cross_validate",
+       .seconds = 75.2,
+       .status = "failed",
+       .from = {"excitation", "moment"}},
+      {.name = "verdict",
+       .run = "pipelines.compare",
+       .seconds = 0.05,
+       .status = "skipped",
+       .from = {"moment", "forces", "cross"}}};
   document.sections = {quality(), conditioning(), activations(), calibration(), moments(), odd()};
   document.methods = {
-      "Surface EMG was high-pass filtered at 30 Hz (Butterworth, effective order 4, zero lag), rectified and low-pass "
+      "Surface EMG was high-pass filtered at 30 Hz (Butterworth, effective order 4, zero lag), rectified and "
+      "low-pass "
       "filtered at 6 Hz. Activation followed second-order dynamics (Lloyd & Besier 2003, "
       "doi:10.1016/S0021-9290(03)00010-1), force the model of Thelen (2003), doi:10.1115/1.1531112.",
-      "Forearm and hand inertia were taken from de Leva (1996), doi:10.1016/0021-9290(95)00178-6, for a body mass of 75 kg."};
-  document.provenance = {{"program", "brachium 0.1.0"},
-                         {"definition", "`elbow_curls.toml`, sha256 9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"},
-                         {"recordings", "6 files, 84.1 MB"},
-                         {"run", "2026-01-01 12:00:00 UTC, 1 min 33 s on 2 threads"}};
+      "Forearm and hand inertia were taken from de Leva (1996), doi:10.1016/0021-9290(95)00178-6, for a body "
+      "mass of 75 kg."};
+  document.provenance = {
+      {"program", "brachium 0.1.0"},
+      {"definition",
+       "`elbow_curls.toml`, sha256 9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"},
+      {"recordings", "6 files, 84.1 MB"},
+      {"run", "2026-01-01 12:00:00 UTC, 1 min 33 s on 2 threads"}};
   return document;
 }
 
