@@ -48,7 +48,8 @@ Tone verdict_tone(const std::string& text) {
   // Whole words: "badly placed" is no verdict.
   const auto starts_with_any = [&](std::initializer_list<std::string_view> words) {
     return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
-      const bool ends = lower.size() <= word.size() || !std::isalnum(static_cast<unsigned char>(lower[word.size()]));
+      const bool ends =
+          lower.size() <= word.size() || !std::isalnum(static_cast<unsigned char>(lower[word.size()]));
       return lower.starts_with(word) && ends;
     });
   };

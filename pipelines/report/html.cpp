@@ -44,8 +44,12 @@ class Page {
 };
 
 std::string Page::unique_anchor(const std::string& wanted) {
-  std::string anchor = wanted;
-  for (int k = 2; !anchors_.insert(anchor).second; ++k) anchor = wanted + "-" + std::to_string(k);
+  std::string base = wanted;
+  for (char& c : base) {
+    if (static_cast<unsigned char>(c) <= ' ') c = '-';  // an id has no white space
+  }
+  std::string anchor = base;
+  for (int k = 2; !anchors_.insert(anchor).second; ++k) anchor = base + "-" + std::to_string(k);
   return anchor;
 }
 
@@ -58,7 +62,7 @@ void Page::head(const Document& document) {
   out_ +=
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
-  out_ += escape(document.title);
+  out_ += escape(plain_text(document.title));
   out_ += "</title>\n<style>";
   out_ += style_sheet();
   out_ += "</style>\n</head>\n<body>\n<header>\n<h1>" + inline_markup(document.title) + "</h1>\n";
@@ -102,7 +106,7 @@ void Page::contents(const Document& document, const std::vector<std::string>& an
   heading(2, "Contents", "contents");
   out_ += "<ol>\n";
   const auto entry = [&](const std::string& anchor, const std::string& title) {
-    out_ += "<li><a href=\"#" + escape(anchor) + "\">" + escape(title) + "</a></li>\n";
+    out_ += "<li><a href=\"#" + escape(anchor) + "\">" + escape(plain_text(title)) + "</a></li>\n";
   };
   for (std::size_t k = 0; k < anchors.size(); ++k) entry(anchors[k], document.sections[k].title);
   if (!document.methods.empty()) entry("methods", "Methods");

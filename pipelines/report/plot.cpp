@@ -297,7 +297,7 @@ std::string draw_plot(const Plot& plot, const PlotFrame& frame) {
   const std::string size = plot.equal_axes ? ";width:" + pixels(width + left + right) + "px" : "";
   out += "<svg class=\"plot\" role=\"img\" height=\"" + pixels(top) + "\" style=\"padding:0 " +
          pixels(right) + "px 0 " + pixels(left) + "px" + size + "\"><title>" +
-         escape(plot.title.empty() ? plot.y_label : plot.title) + "</title><desc>" +
+         escape(plain_text(plot.title.empty() ? plot.y_label : plot.title)) + "</title><desc>" +
          escape(description(plot, x, first_y)) + "</desc>" + body + "</svg>";
   const std::string left_out = left_out_sentence(plot);
   if (!plot.note.empty() || !left_out.empty()) {

@@ -198,6 +198,12 @@ std::string typeset_label(std::string_view label) {
   return std::string(label.substr(0, open)) + "[" + typeset_unit(unit) + "]";
 }
 
+std::string plain_text(std::string_view text) {
+  std::string out(text);
+  std::erase(out, '`');
+  return out;
+}
+
 std::string make_anchor(std::string_view title) {
   std::string out;
   for (const char c : title) {

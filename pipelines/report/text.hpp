@@ -26,6 +26,9 @@ std::string typeset_label(std::string_view label);
 /// A unit alone, set as in typeset_label.
 std::string typeset_unit(std::string_view unit);
 
+/// `text` without the backticks of code spans, for places that admit no markup. Not escaped.
+std::string plain_text(std::string_view text);
+
 /// A name for links: lower case letters, digits and hyphens; never empty.
 std::string make_anchor(std::string_view title);
 

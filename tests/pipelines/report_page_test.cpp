@@ -84,7 +84,8 @@ TEST(ReportPage, ErrorsComeBeforeWarningsBeforeNotes) {
 
 TEST(ReportPage, ManyNotesAreFoldedAway) {
   Document document;
-  for (int k = 0; k < 40; ++k) document.findings.push_back({.text = std::string("note ").append(std::to_string(k))});
+  for (int k = 0; k < 40; ++k)
+    document.findings.push_back({.text = std::string("note ").append(std::to_string(k))});
   EXPECT_THAT(render_html(document), HasSubstr("<summary>40 notes</summary>"));
 }
 

@@ -59,7 +59,7 @@ Section quality() {
   section.blocks.push_back(Paragraph{
       .text = "Every channel is judged on the raw recording, before any filter. Thresholds are the options "
               "of stage "
-              "`quality`; a channel that fails is excluded by name (doi:10.1016/j.jelekin.2018.10.002)."});
+              "`quality`; a channel that fails is excluded by name."});
   data::Table table{
       .title = "Channels, worst trial",
       .columns = {

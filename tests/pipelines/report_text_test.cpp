@@ -59,6 +59,10 @@ TEST(ReportText, LabelsCarryTypesetUnits) {
   EXPECT_EQ(typeset_unit("s^-1"), "s⁻¹");
 }
 
+TEST(ReportText, PlainTextHasNoCodeMarks) {
+  EXPECT_EQ(plain_text("stage `a` <b>"), "stage a <b>");
+}
+
 TEST(ReportText, AnchorsAreNeverEmpty) {
   EXPECT_EQ(make_anchor("EMG quality (raw)"), "emg-quality-raw");
   EXPECT_EQ(make_anchor("±"), "section");
