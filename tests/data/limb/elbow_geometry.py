@@ -2,9 +2,10 @@
 """Muscle-tendon lengths of the shipped elbow scenes, computed from the public OpenSim model arm26.
 
 elbow_geometry.py ARM26.osim                        table of the fits, of the fibre lengths and of the published arms
-elbow_geometry.py ARM26.osim --check SCENE...       compares the [muscle.geometry] blocks of scenes; status 1 if they differ
+elbow_geometry.py ARM26.osim --check SCENE...       compares the geometry of scenes; status 1 if it differs
 elbow_geometry.py ARM26.osim --write SCENE...       replaces those blocks
-elbow_geometry.py ARM26.osim --validate FOLDER      compares with OpenSim's own results (the OutputReference folder)
+elbow_geometry.py ARM26.osim --validate FOLDER      compares with OpenSim's own results (the OutputReference folder);
+                                                    status 1 beyond 0.1 mm or 0.01 N m
 
 | symbol | unit | meaning                                                                          |
 |--------|------|----------------------------------------------------------------------------------|
@@ -51,9 +52,9 @@ least_end_m = 0.006
 arm_weight_rad = 0.5  # an error of the arm of 1 mm counts as much as one of the length of 0.5 mm
 
 # Brachioradialis, forearm neutral.
-brd_origin_m = 0.077     # largest moment arm, mean of 10 arms: Murray, Buchanan & Delp 2000, doi:10.1016/S0021-9290(00)00051-8
+brd_origin_m = 0.077     # largest moment arm, mean of 10 arms: Murray et al. 2000, doi:10.1016/S0021-9290(00)00051-8
 brd_insertion_m = 0.24   # base of the radial styloid, 10 mm short of the scenes' forearm
-brd_pulley_m = 0.020     # moment arm of the straight elbow: Pigeon, Yahia & Feldman 1996, doi:10.1016/0021-9290(96)00031-0
+brd_pulley_m = 0.020     # moment arm of the straight elbow: the regressions below
 brd_optimal_deg = 80.0   # where fibres are at their optimum: moment arms leave the constant of the length free
 
 # Parameters of the scenes (arm26; brachioradialis: Holzbaur et al. 2005), for the fibre lengths of a rigid tendon.
@@ -62,10 +63,12 @@ parameters = {  # optimal fibre length m, tendon slack length m, pennation at op
     "BIClong": (0.1157, 0.2723, 0, 624.3), "BICshort": (0.1321, 0.1923, 0, 435.56), "BRA": (0.0858, 0.0535, 0, 987.26),
     "BRD": (0.1726, 0.1330, 0, 261.33)}
 
-# Moment arms (mm) at 10, 45, 90, 120 deg by the regressions of Pigeon, Yahia & Feldman 1996, to compare with.
+# Moment arms (mm) to compare with, at 10, 45, 90, 120 deg: regressions listed by the Institute of Biophysics and
+# Biomedical Engineering, Sofia (biomed.bas.bg, MuscleArms.html). The brachioradialis starts there at 20.15 mm.
+# Largest ones by Murray et al. 2000: long head of biceps 47, of triceps 23, brachioradialis 77 mm.
 shown_deg = (10, 45, 90, 120)
-pigeon_mm = {"TRI": (-24.9, -24.0, -19.2, -20.4), "BIC": (18.0, 28.9, 47.1, 41.9), "BRA": (15.3, 17.6, 27.8, 25.9),
-             "BRD": (20.2, 30.7, 53.8, 68.4)}
+listed_mm = {"TRI": (-24.9, -23.9, -19.2, -16.9), "BIC": (18.1, 26.8, 47.1, 45.9), "BRA": (15.3, 16.8, 27.8, 29.6),
+             "BRD": (20.2, 30.7, 54.4, 68.4)}
 
 
 def numbers(text):
@@ -115,8 +118,7 @@ class Arm:
         centre = numbers(s.find("translation").text) - (self.shoulder if body == "base" else 0.0)
         turn = body_fixed_xyz(numbers(s.find("xyz_body_rotation").text))
         if tag == "WrapCylinder":
-            return {"centre": centre, "turn": turn, "radius": float(s.find("radius").text),
-                    "half_length": float(s.find("length").text) / 2}
+            return {"centre": centre, "turn": turn, "radius": float(s.find("radius").text)}
         return {"centre": centre, "turn": turn, "axes": numbers(s.find("dimensions").text)}
 
     def place(self, point, q):
@@ -129,7 +131,7 @@ class Arm:
 
 
 def over_cylinder(a, b, cylinder, turning):
-    """Shortest length from a to b past a cylinder and the unit vector along it at b.
+    """Shortest length from a to b past an endless cylinder, the unit vector along it at b and the arc of contact.
 
     turning = +1 or -1: sense in which the path goes round the cylinder's own z axis. Straight where it touches nothing.
     """
@@ -303,7 +305,8 @@ def write(scene, fits):
 def check(scene, fits):
     """Largest difference (m) of length or moment arm between a scene's polynomials and the fits, over the range."""
     q = np.linspace(*scene_range, 200)
-    found = {m[2]: [[float(x) for x in m[k].split(",")] for k in (3, 4)] for m in block.finditer(Path(scene).read_text())}
+    found = {m[2]: [[float(x) for x in m[k].split(",")] for k in (3, 4)]
+             for m in block.finditer(Path(scene).read_text())}
     if sorted(found) != sorted(muscles):
         raise SystemExit(f"{scene}: geometry found for {sorted(found)}")
     worst = 0.0
@@ -323,7 +326,7 @@ def report(arm, fits):
     inside = (q >= model_range[0]) & (q <= model_range[1])
     print("fit over 0 to 130 deg, and over -10 to 165 deg; fibre length: rigid tendon, over 0 to 150 deg")
     print(f"{'':9}{'L rms':>7}{'max':>6}{'r rms':>7}{'max mm':>7}{'|r| least':>11}{'largest mm':>11}"
-          f"{'fibre/l_opt':>14}  {'r at ' + ', '.join(map(str, shown_deg)) + ' deg: fit (path; Pigeon) mm'}")
+          f"{'fibre/l_opt':>14}  {'r at ' + ', '.join(map(str, shown_deg)) + ' deg: fit (path; listed) mm'}")
     for muscle in muscles:
         length, arm_m, _ = computed(arm, muscle, q)
         dl = 1e3 * (values(fits[muscle], q) - length)[inside]
@@ -331,10 +334,11 @@ def report(arm, fits):
         dr = 1e3 * (r - arm_m)[inside]
         ends = fibre_length(muscle, values(fits[muscle], np.linspace(0, 150 * degree, 301)))
         shown = []
-        for angle, published in zip(shown_deg, pigeon_mm[muscle[:3]]):
+        for angle, published in zip(shown_deg, listed_mm[muscle[:3]]):
             at = np.array([angle * degree])
             _, exact, _ = computed(arm, muscle, at)
-            shown.append(f"{1e3 * values(arm_coefficients(fits[muscle]), at)[0]:6.1f} ({1e3 * exact[0]:.1f}; {published:.1f})")
+            ours = values(arm_coefficients(fits[muscle]), at)
+            shown.append(f"{1e3 * ours[0]:6.1f} ({1e3 * exact[0]:.1f}; {published:.1f})")
         print(f"{muscle:9}{np.sqrt((dl**2).mean()):7.2f}{np.abs(dl).max():6.2f}{np.sqrt((dr**2).mean()):7.2f}"
               f"{np.abs(dr).max():7.2f}{1e3 * np.abs(r).min():11.1f}{1e3 * np.abs(r).max():11.1f}"
               f"{ends.min():8.2f}-{ends.max():.2f}  {'  '.join(shown)}")
@@ -352,6 +356,7 @@ def validate(arm, folder):
     results = Path(folder) / "ComputedMuscleControl" / "Results"
     states, forces = storage(results / "arm26_states.sto"), storage(results / "arm26_Actuation_force.sto")
     q = states["r_elbow_flex"]
+    worst = 0.0
     print(f"OpenSim, {q.min() / degree:.0f} to {q.max() / degree:.0f} deg, length computed here minus there, mm:")
     for muscle in muscles[:-1]:
         l_opt, l_slack, pennation, strength = parameters[muscle]
@@ -364,6 +369,7 @@ def validate(arm, folder):
         theirs = np.sqrt(fibre**2 - across**2) + l_slack * (1 + strain)
         ours, _, _ = computed(arm, muscle, q)
         d = 1e3 * (ours - theirs)
+        worst = max(worst, np.abs(d).max() / 0.1)
         print(f"  {muscle:9} mean {d.mean():6.2f}  sd {d.std():5.2f}  range {d.min():6.2f} to {d.max():6.2f}")
     static = storage(Path(folder) / "StaticOptimization/PhysiologicalResults/arm26_StaticOptimization_force.sto")
     moment = storage(Path(folder) / "InverseDynamics/FilteredResults/arm26_InverseDynamics.sto")["r_elbow_flex_moment"]
@@ -375,6 +381,7 @@ def validate(arm, folder):
     d = (total - moment)[3:-3]
     print(f"  elbow moment: sum of force x arm minus inverse dynamics, N m: rms {np.sqrt((d**2).mean()):.4f}, "
           f"largest {np.abs(d).max():.4f}, of at most {np.abs(moment).max():.2f}")
+    return int(not max(worst, np.abs(d).max() / 0.01) < 1)
 
 
 def main():
@@ -386,8 +393,7 @@ def main():
     given = options.parse_args()
     arm = Arm(given.osim)
     if given.validate:
-        validate(arm, given.validate)
-        return 0
+        return validate(arm, given.validate)
     q = np.linspace(*scene_range, 351)
     fits = {}
     for muscle in muscles:
