@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "data/model/table.hpp"
 #include "optimise/calibration_problem.hpp"
 #include "optimise/excitation_error.hpp"
 #include "optimise/metrics.hpp"
 #include "optimise/solve.hpp"
 #include "optimise/statistics.hpp"
+#include "optimise/verdicts.hpp"
 
 namespace brachium::optimise {
 
@@ -41,12 +41,6 @@ struct CalibrationResult {
 /// Fits. Throws InputError as CalibrationProblem does, and data::ConvergenceFailure if no start succeeds.
 CalibrationResult calibrate(const data::Scene& scene, const std::vector<CalibrationTrial>& trials,
                             const CalibrationOptions& options);
-
-/// The verdicts as a table: owner, parameter, unit, start, fitted, lower, upper, standard error, 95 % interval, bias,
-/// verdict, remark.
-data::Table verdict_table(const data::Subject& subject);
-/// The same as fixed-width text.
-std::string verdict_text(const data::Subject& subject);
 
 /// A subject's moment on a trial, at the reference's time stamps inside the usable window.
 struct Prediction {

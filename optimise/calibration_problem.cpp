@@ -357,6 +357,28 @@ std::vector<double> CalibrationProblem::modelled_N_m(std::size_t trial, const Ei
   return out;
 }
 
+std::vector<double> CalibrationProblem::frame_times_s(std::size_t trial) const {
+  return impl_->chain->trials.at(trial)->frame_time_s;
+}
+
+std::vector<MuscleTraces> CalibrationProblem::muscle_traces(std::size_t trial, const Eigen::VectorXd& x) const {
+  const Chain& chain = *impl_->chain;
+  const PreparedTrial& t = *chain.trials.at(trial);
+  const ChainValues values = chain.free.apply(chain.start, x);
+  std::vector<MuscleTraces> out;
+  for (std::size_t m = 0; m < chain.muscles.size(); ++m) {
+    MuscleRun run;
+    run.update(chain, m, t, impl_->samples[trial], values, false);
+    MuscleTraces traces{chain.muscles[m].name, run.activation(), run.force(), run.force(), run.trace().fibre_length_m};
+    for (std::size_t i = 0; i < traces.force_N.size(); ++i) {
+      traces.force_N[i] *= values.muscles[m].parameters.strength;
+      traces.moment_N_m[i] = t.arm_m[m][i] * traces.force_N[i];
+    }
+    out.push_back(std::move(traces));
+  }
+  return out;
+}
+
 data::Subject CalibrationProblem::subject(const Eigen::VectorXd& x) const {
   const Chain& chain = *impl_->chain;
   const ChainValues values = chain.free.apply(chain.start, x);

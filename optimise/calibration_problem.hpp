@@ -104,6 +104,12 @@ struct TrialWindow {
   std::size_t below_zero = 0;      ///< and below 0, as zero-lag filters leave them
 };
 
+/// One muscle on one trial, at the reference's samples inside the common span (frames).
+struct MuscleTraces {
+  std::string muscle;
+  std::vector<double> activation, force_N, moment_N_m, fibre_length_m;
+};
+
 /// How often muscles were run since the evaluator was made.
 struct EvaluationCount {
   std::size_t points = 0;
@@ -140,6 +146,8 @@ class CalibrationProblem final : public LeastSquaresProblem {
   /// Modelled moment at times_s, from residuals as evaluate() gave them.
   std::vector<double> modelled_N_m(std::size_t trial, const Eigen::VectorXd& residuals) const;
 
+  std::vector<double> frame_times_s(std::size_t trial) const;
+  std::vector<MuscleTraces> muscle_traces(std::size_t trial, const Eigen::VectorXd& x) const;
   /// Muscles (with fixed parameters where nothing is free), gains and model at x; no verdicts.
   data::Subject subject(const Eigen::VectorXd& x) const;
   /// Indices of the strength parameters: the moment is linear in them.

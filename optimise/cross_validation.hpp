@@ -4,9 +4,11 @@
 /// Everything that depends on data is computed anew in each fold from its training trials alone: the fit, its
 /// scale, the normalisation of channels without an MVC (a factor of one on their training maximum), the baselines.
 
+#include <map>
 #include <string>
 #include <vector>
 
+#include "data/model/table.hpp"
 #include "optimise/baseline.hpp"
 #include "optimise/calibration.hpp"
 

@@ -191,13 +191,13 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
 
   data::parallel_for(replicates, threads, [&](std::size_t k) {
     CalibrationProblem::Samples noisy = samples;
-    std::uint64_t stream = k << 20;
+    std::uint64_t stream = static_cast<std::uint64_t>(k / 2) << 20;
     for (std::size_t t = 0; t < noisy.size(); ++t) {
       for (auto& channel : noisy[t]) {
         // Antithetic pairs: replicate 2i + 1 has the opposite noise of 2i, so that the bias, which is even in the
         // noise, is not blurred by its odd part.
         const std::vector<double> eta =
-            envelope_noise(channel.size(), problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, (k / 2 << 20) + (++stream & 0xfffff));
+            envelope_noise(channel.size(), problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
         const double sign = k % 2 == 0 ? noise.coefficient_of_variation : -noise.coefficient_of_variation;
         for (std::size_t i = 0; i < channel.size(); ++i) channel[i] *= 1.0 + sign * eta[i];
       }

@@ -10,6 +10,10 @@
 
 namespace brachium::optimise {
 
+using emg::parse_activation_form;
+using emg::parse_start_up;
+using emg::to_string;
+
 struct ModelChoice {
   std::string curves = "degroote_fregly_2016";  ///< curve set of hill/
   hill::TendonKind tendon = hill::TendonKind::rigid;

@@ -34,9 +34,9 @@ void check_options(const SolveOptions& options) {
   if (!found.empty()) throw data::InputError(std::move(found));
 }
 
-Eigen::VectorXd drawn_start(const std::vector<Parameter>& parameters, std::uint64_t seed, std::size_t index) {
-  if (index == 0) return start_of(parameters);
-  emg::Random random(seed, index);
+Eigen::VectorXd drawn_start(const std::vector<Parameter>& parameters, const SolveOptions& options, std::size_t index) {
+  if (index == 0) return options.start.value_or(start_of(parameters));
+  emg::Random random(options.seed, index);
   Eigen::VectorXd x = lower_of(parameters);
   const Eigen::VectorXd width = upper_of(parameters) - x;
   for (Eigen::Index j = 0; j < x.size(); ++j) x[j] += width[j] * random.uniform();
@@ -86,6 +86,11 @@ Summary solve(const LeastSquaresProblem& problem, const SolveOptions& options) {
   check_parameters(problem.parameters());
   check_options(options);
   if (problem.parameters().empty()) throw data::InputError("nothing-free", "the problem has no free parameter");
+  if (options.start) {
+    const Eigen::VectorXd &x = *options.start, lower = lower_of(problem.parameters()), upper = upper_of(problem.parameters());
+    if (x.size() != lower.size() || !((x - lower).minCoeff() >= 0.0) || !((upper - x).minCoeff() >= 0.0))
+      throw data::InputError("out-of-range", "the start given to the solver is not inside the parameters' bounds");
+  }
   const auto begin = std::chrono::steady_clock::now();
 
   Summary summary;
@@ -94,7 +99,7 @@ Summary solve(const LeastSquaresProblem& problem, const SolveOptions& options) {
   std::mutex mutex;
   data::parallel_for(options.starts, options.threads, [&](std::size_t index) {
     StartResult& result = summary.starts[index];
-    result.start = drawn_start(problem.parameters(), options.seed, index);
+    result.start = drawn_start(problem.parameters(), options, index);
     result.cost = std::numeric_limits<double>::infinity();
     Objective objective(problem);
     const Report report = [&](Iteration row) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,8 @@ struct SolveOptions {
   double cost_tolerance = 1e-14;      ///< stop when the relative decrease of f is below ...
   double step_tolerance = 1e-11;      ///< ... or the step in scaled parameters is below ...
   double gradient_tolerance = 1e-11;  ///< ... or the projected gradient relative to sqrt(2 f) max |J column| is below
-  std::size_t starts = 1;             ///< first the parameters' start, then points drawn between the bounds
+  std::optional<Eigen::VectorXd> start;  ///< first start; default: the parameters' own
+  std::size_t starts = 1;             ///< the first start, then points drawn between the bounds
   std::uint64_t seed = 1;             ///< of starts and of stochastic solvers; results repeat exactly
   std::size_t threads = 1;            ///< multi-starts in parallel (0: all cores); results do not depend on it
   std::function<void(const Iteration&)> progress;  ///< called under a lock, from any thread
@@ -84,7 +86,7 @@ struct Summary {
 /// all fail. Throws InputError for bad parameters or options.
 Summary solve(const LeastSquaresProblem& problem, const SolveOptions& options);
 
-/// f, and its gradient if wanted, priors included.
+/// f, priors included.
 double cost_of(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x, const Eigen::VectorXd& residuals);
 
 }  // namespace brachium::optimise
