@@ -50,7 +50,7 @@ Eigen::Matrix3Xd forward_of(const Eigen::Matrix3Xd& u, const Eigen::Vector3d& up
   Eigen::Matrix3Xd h(3, u.cols());
   for (Index i = 0; i < u.cols(); ++i) {
     const Eigen::Vector3d part = horizontal.col(i);
-    h.col(i) = ((part.dot(mean) < 0.0 ? -1.0 : 1.0) * part + hold * mean).normalized();
+    h.col(i) = (part.dot(mean) * part + hold * mean).normalized();
   }
   return h;
 }

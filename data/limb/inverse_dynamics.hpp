@@ -15,8 +15,9 @@
 /// of the forearm's own twist, are left out):
 ///   M = n . [ I u x u'' + S u x (a - g) ] = I B + S A       (Winter 2009, ch. 5; Zatsiorsky 2002, ch. 5)
 /// The hinge's axis is not recorded: n is taken horizontal and perpendicular to the vertical plane of the forearm.
-/// Near the vertical, where that plane is lost, it is held by the trial's mean plane: h ~ s u_h + 0.05 h_mean, with the
-/// horizontal part u_h of u, s = +-1 such that s u_h points forward as h_mean does; n = h x up.
+/// Near the vertical, where that plane is lost, it is held by the trial's mean plane:
+///   n = h x up,   h ~ (u_h . h_mean) u_h + 0.05 h_mean,   u_h the horizontal part of u.
+/// The product makes h continuous and forward also where the forearm passes the vertical or hangs sideways.
 ///
 /// M is linear in m_i and I_ci and polynomial in d_i, so first-order propagation over independent x_k gives
 ///   sd(M)^2 = sum_k (alpha_k A + beta_k B)^2,   alpha_k = sd_k dS/dx_k,  beta_k = sd_k dI/dx_k.

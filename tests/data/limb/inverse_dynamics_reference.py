@@ -41,7 +41,7 @@ if len(sys.argv) > 1:
     z = np.array([0, 0, 1.0])
     horizontal = u - np.outer(u @ z, z)
     mean = horizontal.sum(0) / np.linalg.norm(horizontal.sum(0))
-    h = np.where(horizontal @ mean < 0, -1, 1)[:, None] * horizontal + 0.05 * mean
+    h = (horizontal @ mean)[:, None] * horizontal + 0.05 * mean
     h /= np.linalg.norm(h, axis=1)[:, None]
     n = np.cross(h, z)
     # forearm, hand (de Leva 1996, 75 kg) and the load, each as (mass, distance, inertia about its centre)
