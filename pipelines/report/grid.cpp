@@ -8,7 +8,7 @@
 namespace brachium::pipelines::report {
 namespace {
 
-constexpr std::size_t kLongText = 24;
+constexpr std::size_t kLongText = 18;
 
 std::string class_attribute(const Cell& cell) {
   // A long text must not be squeezed into a column of single words when the table scrolls.
@@ -27,7 +27,7 @@ std::string draw_grid(const Grid& grid) {
     }
     for (std::size_t k = 0; k < row.size(); ++k) numeric[k] = numeric[k] || row[k].numeric;
   }
-  std::string out = "<div class=\"scroll\"><table>";
+  std::string out = "<div class=\"scroll\" tabindex=\"0\"><table>";
   if (!grid.caption.empty()) out += "<caption>" + inline_markup(grid.caption) + "</caption>";
   out += "<thead><tr>";
   for (std::size_t k = 0; k < grid.header.size(); ++k) {

@@ -124,7 +124,7 @@ void Page::end_matter(const Document& document) {
   if (!document.provenance.empty()) {
     out_ += "<section>\n";
     heading(2, "Provenance", "provenance");
-    out_ += "<div class=\"scroll\"><table class=\"prov\"><tbody>\n";
+    out_ += "<div class=\"scroll\" tabindex=\"0\"><table class=\"prov\"><tbody>\n";
     for (const auto& [label, value] : document.provenance) {
       out_ += "<tr><th scope=\"row\">" + escape(label) + "</th><td>" + inline_markup(value) + "</td></tr>\n";
     }
