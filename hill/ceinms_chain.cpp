@@ -20,12 +20,14 @@ enum Slot : std::size_t { kLength = 0, kSlope, kLengthTangent, kSlopeTangent, kL
 
 // Per frame: the final force's partials, and for the elastic root those of R.
 struct Linear {
+  bool wanted = false;
   double *F_l, *F_v, *F_a, *inverse, *R_v, *R_a;
   std::array<double*, kParameterCount> F, R;
   static constexpr std::size_t kArrays = 6 + 2 * kParameterCount;
 
-  Linear(MuscleScratch& s, std::size_t n, std::bitset<kParameterCount> wanted)
-      : F_l(s.array(kLinear, n).data()),
+  Linear(MuscleScratch& s, std::size_t n, std::bitset<kParameterCount> parameters, bool any)
+      : wanted(any),
+        F_l(s.array(kLinear, n).data()),
         F_v(s.array(kLinear + 1, n).data()),
         F_a(s.array(kLinear + 2, n).data()),
         inverse(s.array(kLinear + 3, n).data()),
@@ -34,7 +36,7 @@ struct Linear {
         F{},
         R{} {
     for (std::size_t i = 0; i < kParameterCount; ++i) {
-      if (!wanted[i]) continue;
+      if (!parameters[i]) continue;
       F[i] = s.array(kLinear + 6 + 2 * i, n).data();
       R[i] = s.array(kLinear + 7 + 2 * i, n).data();
     }
@@ -69,7 +71,7 @@ class Chain {
     const bool elastic = in_.muscle.options().tendon == TendonKind::elastic;
     double* l = in_.scratch.array(kLength, n).data();
     double* v = in_.scratch.array(kSlope, n).data();
-    const Linear lin(in_.scratch, n, in_.wanted());
+    const Linear lin(in_.scratch, n, in_.wanted(), !in_.tangents.empty());
     for (std::size_t k = 0; k < n; ++k) {
       in_.out.status[k] = FrameStatus::ok;
       elastic ? elastic_length(k, l, lin) : rigid_length(k, l, lin);
@@ -112,6 +114,7 @@ class Chain {
   void slack_length(std::size_t k, double* l, const Linear& lin) const {
     in_.out.status[k] = FrameStatus::slack;
     l[k] = std::sqrt(c_.h * c_.h + c_.z_min * c_.z_min);
+    if (!lin.wanted) return;
     lin.inverse[k] = 1.0;
     lin.R_v[k] = lin.R_a[k] = 0.0;
     for (const MuscleParameter p : kAllParameters) {
@@ -126,6 +129,7 @@ class Chain {
     const double z = in_.L[k] - c_.ls;
     if (!(z > c_.z_min)) return slack_length(k, l, lin);
     l[k] = std::sqrt(c_.h * c_.h + z * z);
+    if (!lin.wanted) return;
     lin.inverse[k] = 1.0;
     lin.R_v[k] = lin.R_a[k] = 0.0;
     for (const MuscleParameter p : kAllParameters) {
@@ -154,6 +158,12 @@ class Chain {
     return r;
   }
 
+  double guess(std::size_t k, const double* l) const {
+    if (k == 0) return c_.lo;
+    if (k < 3) return l[k - 1];
+    return 3.0 * (l[k - 1] - l[k - 2]) + l[k - 3];
+  }
+
   // CEINMS looks between 0.2 and 2 optimal lengths with Brent's method to 1e-6 m; we solve to rounding, and take
   // a path without a sign change there as slack (too short) or as a failure (too long).
   void elastic_length(std::size_t k, double* l, const Linear& lin) const {
@@ -163,12 +173,12 @@ class Chain {
     double lower = std::max(0.2 * c_.lo, c_.h * (1.0 + 1e-9)), upper = 2.0 * c_.lo;
     if (!(L - c_.ls > c_.z_min) || !(at(lower).R > 0.0)) return slack_length(k, l, lin);
     if (!(at(upper).R < 0.0)) fail(k, "no equilibrium below twice the optimal fibre length: the path is too long", 0);
-    double x = k == 0 ? std::clamp(c_.lo, lower, upper) : l[k - 1];
+    double x = std::clamp(guess(k, l), lower, upper);
     for (int i = 0; i < 200; ++i) {
       const Residual r = at(x);
       (r.R > 0.0 ? lower : upper) = x;
       const double step = -r.R / r.R_l;
-      const bool close = r.R_l < 0.0 && std::abs(step) <= 1e-12 * c_.lo;
+      const bool close = r.R_l < 0.0 && std::abs(step) <= 1e-10 * c_.lo;
       double next = x + step;
       if (close || !(upper - lower > 4e-16 * upper)) {
         l[k] = close ? next : x;
@@ -182,6 +192,7 @@ class Chain {
 
   // dl = (R_theta + R_a da + R_v dβ) inverse, with inverse = -1/R_l.
   void linearise_root(std::size_t k, const Residual& r, const Linear& lin) const {
+    if (!lin.wanted) return;
     const double l = in_.scratch.array(kLength, in_.frames())[k];
     lin.inverse[k] = -1.0 / r.R_l;
     lin.R_v[k] = -r.g.c * (is_cut(r.v) ? 0.0 : r.f.N_v / c_.V);
@@ -201,6 +212,7 @@ class Chain {
   void force(std::size_t k, double l, double v, const Linear& lin) const {
     if (in_.out.status[k] == FrameStatus::slack) {
       record_slack(in_.out, k, c_);
+      if (!lin.wanted) return;
       lin.F_l[k] = lin.F_v[k] = lin.F_a[k] = 0.0;
       for (double* F : lin.F) {
         if (F != nullptr) F[k] = 0.0;
@@ -216,6 +228,7 @@ class Chain {
     const FibreForce& f = q.fibre;
     in_.out.force_N[k] = c_.S * g.c * f.N;
     record(in_.out, k, q, v, c_.damping);
+    if (!lin.wanted) return;
     lin.F_l[k] = c_.S * (g.c_l * f.N + g.c * f.N_l);
     lin.F_v[k] = is_cut(v) ? 0.0 : c_.S * g.c * f.N_v / c_.V;
     lin.F_a[k] = c_.S * g.c * f.N_a;

@@ -97,7 +97,10 @@ class Chain {
   }
 
   double guess(std::size_t k, const double* z, const double* known) const {
-    if (known != nullptr) return k == 0 ? known[0] : known[k] + (z[k - 1] - known[k - 1]);
+    if (known != nullptr) {
+      if (k < 2) return known[k];
+      return known[k] + 2.0 * (z[k - 1] - known[k - 1]) - (z[k - 2] - known[k - 2]);
+    }
     if (k == 0) return -1.0;
     if (k == 1) return z[0] + (in_.L[1] - in_.L[0]);
     if (k == 2) return 2.0 * z[1] - z[0];
@@ -122,7 +125,10 @@ class Chain {
         continue;
       }
       const double w = p.alpha * e.z + p.beta;
-      const Projected q = project(set_, c_, e.z, w, p.a);
+      // Tangents and parts want everything at z itself; the rest follows from the last iterate.
+      const bool again = lin != nullptr || in_.out.parts || e.kind == Equilibrium::Kind::untaut;
+      Projected q = again ? project(set_, c_, e.z, w, p.a) : e.fibres;
+      if (!again) q.l += q.c * e.step;
       if (last) {
         const bool untaut = e.kind == Equilibrium::Kind::untaut;
         const bool pushes = (untaut && q.Q < 0.0) || e.z > p.L - c_.ls || e.tendon < 0.0;

@@ -31,6 +31,7 @@ inline constexpr double kShortestProjection = 0.01;
 /// The constants of one muscle, as the inner loops want them.
 struct ElementConstants {
   double S, lo, ls, h, sin_opt, cos_opt, V, vmax, damping, coupling, z_min;
+  double per_lo, per_ls, per_V;  // reciprocals
   bool with_velocity;
 
   explicit ElementConstants(const MuscleTendon& muscle) {
@@ -46,6 +47,9 @@ struct ElementConstants {
     damping = p.fibre_damping;
     coupling = muscle.options().optimal_length_coupling;
     z_min = kShortestProjection * lo;
+    per_lo = 1.0 / lo;
+    per_ls = ls > 0.0 ? 1.0 / ls : 0.0;
+    per_V = 1.0 / V;
     with_velocity = muscle.options().velocity != FibreVelocity::none;
   }
 };
@@ -65,9 +69,9 @@ struct FibreForce {
 template <class Set>
 inline FibreForce fibre_force(const Set& set, const ElementConstants& k, double l, double vn, double a) {
   FibreForce f;
-  const double kappa = 1.0 + k.coupling * (1.0 - a);
-  f.x = l / k.lo;
-  f.xa = k.coupling == 0.0 ? f.x : f.x / kappa;
+  const double per_kappa = k.coupling == 0.0 ? 1.0 : 1.0 / (1.0 + k.coupling * (1.0 - a));
+  f.x = l * k.per_lo;
+  f.xa = f.x * per_kappa;
   const data::CurveValue fl = set.active(f.xa);
   const data::CurveValue fp = set.passive(f.x);
   VelocityValue fv{1.0, 0.0, 0.0};
@@ -82,9 +86,9 @@ inline FibreForce fibre_force(const Set& set, const ElementConstants& k, double 
   f.active_slope = a * fv.value * fl.slope;
   f.passive_slope = fp.slope;
   f.N = f.active + f.passive + damping * vn;
-  f.N_l = (f.active_slope / kappa + f.passive_slope) / k.lo;
+  f.N_l = (f.active_slope * per_kappa + f.passive_slope) * k.per_lo;
   f.N_v = a * fl.value * fv.slope + damping;
-  f.N_a = fl.value * (fv.value + a * fv.slope_activation) + f.active_slope * f.xa * k.coupling / kappa;
+  f.N_a = fl.value * (fv.value + a * fv.slope_activation) + f.active_slope * f.xa * k.coupling * per_kappa;
   return f;
 }
 
@@ -104,16 +108,17 @@ inline Projected project(const Set& set, const ElementConstants& k, double z, do
     q.c = 1.0;
   } else {
     q.l = std::sqrt(k.h * k.h + z * z);
-    q.c = z / q.l;
-    c_z = (1.0 - q.c * q.c) / q.l;
+    const double per_l = 1.0 / q.l;
+    q.c = z * per_l;
+    c_z = (1.0 - q.c * q.c) * per_l;
   }
-  const double rate = w / k.V;
+  const double rate = w * k.per_V;
   q.vn = k.with_velocity ? q.c * rate : 0.0;
   q.fibre = fibre_force(set, k, q.l, q.vn, a);
   const FibreForce& f = q.fibre;
   q.Q = q.c * f.N;
   q.Q_z = c_z * (f.N + (k.with_velocity ? q.c * f.N_v * rate : 0.0)) + q.c * q.c * f.N_l;
-  q.Q_w = q.c * q.c * f.N_v / k.V;
+  q.Q_w = q.c * q.c * f.N_v * k.per_V;
   q.Q_a = q.c * f.N_a;
   if (!k.with_velocity) q.Q_w = 0.0;
   return q;

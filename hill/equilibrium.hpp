@@ -32,7 +32,8 @@ struct Equilibrium {
   Kind kind = Kind::root;
   double z = 0.0;
   double tendon = 0.0;        ///< f_t
-  double tendon_slope = 0.0;  ///< df_t/dz * -1 = f_t'/l_s [1/m]
+  Projected fibres{};     ///< at the last iterate but `step`
+  double step = 0.0;      ///< z - last iterate, below the tolerance
   int evaluations = 0;
 };
 
@@ -56,17 +57,18 @@ class EquilibriumSolver {
     bool lower_checked = false, upper_checked = false;
     double z = guess > lower && guess < upper ? guess : std::max(0.5 * (lower + upper), upper - 0.02 * k_.ls);
     for (e.evaluations = 1; e.evaluations < kMaxEvaluations; ++e.evaluations) {
-      const data::CurveValue t = taut_tendon(set_, (p.L - z) / k_.ls - 1.0);
+      const data::CurveValue t = taut_tendon(set_, strain(p, z));
       const Projected q = project(set_, k_, z, p.alpha * z + p.beta, p.a);
       const double residual = t.value - q.Q;
-      const double slope = t.slope / k_.ls + q.Q_z + p.alpha * q.Q_w;  // -dR/dz
+      const double slope = t.slope * k_.per_ls + q.Q_z + p.alpha * q.Q_w;  // -dR/dz
       (residual > 0.0 ? lower : upper) = z;
       const double step = residual / slope;
       if (slope > 0.0 && std::abs(step) <= kStepTolerance * k_.lo) {
-        // The remaining error of z is of the order of step squared: one term of Taylor's series brings f_t along.
+        // What remains is of the order of step squared, below rounding: f_t and l follow by one term of Taylor's series.
         e.z = z + step;
-        e.tendon = t.value - t.slope / k_.ls * step;
-        e.tendon_slope = t.slope / k_.ls;
+        e.tendon = t.value - t.slope * k_.per_ls * step;
+        e.step = step;
+        e.fibres = q;
         return e;
       }
       double next = z + step;
@@ -83,7 +85,7 @@ class EquilibriumSolver {
         if (next == lower || next == upper) {  // the bracket is as narrow as numbers are
           e.z = z;
           e.tendon = t.value;
-          e.tendon_slope = t.slope / k_.ls;
+          e.fibres = q;
           return e;
         }
       }
@@ -96,7 +98,7 @@ class EquilibriumSolver {
 
  private:
   static constexpr int kMaxEvaluations = 200;
-  static constexpr double kStepTolerance = 1e-10;  // in optimal fibre lengths
+  static constexpr double kStepTolerance = 1e-8;  // in optimal fibre lengths
 
   Equilibrium slack() const {
     Equilibrium e;
@@ -110,11 +112,12 @@ class EquilibriumSolver {
     e.z = taut;
     return e;
   }
+  double strain(const EquilibriumProblem& p, double z) const { return (p.L - z) * k_.per_ls - 1.0; }
   double carried(const EquilibriumProblem& p, double z) const {
     return project(set_, k_, z, p.alpha * z + p.beta, p.a).Q;
   }
   double residual_at(const EquilibriumProblem& p, double z) const {
-    return taut_tendon(set_, (p.L - z) / k_.ls - 1.0).value - carried(p, z);
+    return taut_tendon(set_, strain(p, z)).value - carried(p, z);
   }
 
   const Set& set_;

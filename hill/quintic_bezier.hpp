@@ -7,6 +7,7 @@
 /// y(x) = y(u(x)), and u(x) is the root of the monotone quintic x(u) = x.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -50,11 +51,14 @@ class QuinticBezier {
       const std::size_t k = static_cast<std::size_t>(cell);
       double u = guess[k] + (cell - static_cast<double>(k)) * (guess[k + 1] - guess[k]);
       double rate = 1.0;
-      // The guess is within 1e-3 of the root, and Newton's error squares: two steps leave rounding.
-      for (int i = 0; i < 2; ++i) {
+      // Newton's error squares: what is left after a step below 1e-9 is rounding. Two steps do nearly everywhere, a
+      // third where a strong curviness makes x(u) flat.
+      double step = 1.0;
+      for (int i = 0; i < 8 && std::abs(step) > 1e-9; ++i) {
         const double value = ((((x[5] * u + x[4]) * u + x[3]) * u + x[2]) * u + x[1]) * u + x[0];
         rate = (((5.0 * x[5] * u + 4.0 * x[4]) * u + 3.0 * x[3]) * u + 2.0 * x[2]) * u + x[1];
-        u -= (value - at) / rate;
+        step = (value - at) / rate;
+        u -= step;
       }
       rate = (((5.0 * x[5] * u + 4.0 * x[4]) * u + 3.0 * x[3]) * u + 2.0 * x[2]) * u + x[1];
       return {((((y[5] * u + y[4]) * u + y[3]) * u + y[2]) * u + y[1]) * u + y[0],

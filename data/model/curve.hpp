@@ -38,6 +38,7 @@ class PiecewiseCubic {
   double curvature(double x) const;
   Domain domain() const { return {x_.front(), x_.back()}; }
   std::span<const double> knots() const { return x_; }
+  std::span<const double> knot_values() const { return y_; }
   std::span<const double> knot_slopes() const { return slope_; }
 
  private:
