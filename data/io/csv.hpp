@@ -16,14 +16,14 @@ namespace brachium::io {
 struct CsvLayout {
   std::string delimiter = ",";               ///< one character, "tab" or "whitespace"
   bool decimal_comma = false;                ///< 3,14; the delimiter must then be another character
-  std::string comment;                       ///< prefix of lines to skip; empty: none
+  std::string comment = {};                  ///< prefix of lines to skip; empty: none
   std::size_t skip_rows = 0;                 ///< rows before everything else (free text of the recorder)
   std::optional<std::size_t> header_row = 1; ///< row with the column names; none: columns are named "1", "2", ...
-  std::optional<std::size_t> units_row;      ///< row with the units
-  std::optional<std::size_t> first_data_row; ///< default: the row after header and units
-  std::string time_column;                   ///< name of the time column; empty: there is none
+  std::optional<std::size_t> units_row = {}; ///< row with the units
+  std::optional<std::size_t> first_data_row = {}; ///< default: the row after header and units
+  std::string time_column = {};              ///< name of the time column; empty: there is none
   std::string time_unit = "s";               ///< used where the units row says nothing
-  std::optional<double> rate_hz;             ///< needed where there is no time column
+  std::optional<double> rate_hz = {};        ///< needed where there is no time column
   double start_time_s = 0.0;                 ///< used where there is no time column
   bool allow_non_finite = false;
 };

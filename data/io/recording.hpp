@@ -100,7 +100,7 @@ enum class TimingRule {
 
 struct TimingOptions {
   TimingRule rule = TimingRule::strict;
-  std::optional<double> rate_hz;    ///< overrides what the file states; must agree with its time stamps, if any
+  std::optional<double> rate_hz = {};  ///< overrides what the file states; must agree with its time stamps, if any
   bool ignore_stated_rows = false;  ///< a row count in the header that is wrong becomes a warning
 };
 
