@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -101,6 +102,32 @@ double largest_pole(std::span<const Biquad> sections) {
     radius = std::max({radius, std::abs(-s.a1 + root) / 2.0, std::abs(-s.a1 - root) / 2.0});
   }
   return radius;
+}
+
+// Samples after which the impulse response's tail holds less than level^2 of its energy: what was before then
+// contributes less than `level` of the output's RMS, for an input of flat spectrum.
+double transient_samples(std::span<const Biquad> sections, double level) {
+  const double radius = largest_pole(sections);
+  if (!(radius > 0.0)) return 0.0;
+  const auto n = static_cast<std::size_t>(std::ceil(std::log(1e-3 * level) / std::log(radius)));
+  std::vector<double> energy(n + 1);
+  std::vector<std::array<double, 2>> state(sections.size());
+  for (std::size_t k = 0; k <= n; ++k) {
+    double x = k == 0 ? 1.0 : 0.0;
+    for (std::size_t s = 0; s < sections.size(); ++s) {
+      const Biquad& b = sections[s];
+      const double y = b.b0 * x + state[s][0];
+      state[s][0] = b.b1 * x - b.a1 * y + state[s][1];
+      state[s][1] = b.b2 * x - b.a2 * y;
+      x = y;
+    }
+    energy[k] = x * x;
+  }
+  double total = 0.0, tail = 0.0;
+  for (const double e : energy) total += e;
+  std::size_t k = n + 1;
+  while (k > 0 && tail + energy[k - 1] < level * level * total) tail += energy[--k];
+  return static_cast<double>(k);
 }
 
 void check_edge(std::vector<data::Diagnostic>& list, const char* name, double edge, double rate_hz) {
@@ -284,8 +311,7 @@ FilterReport describe(const DesignedFilter& filter) {
       report.group_delay_s += group_delay(s, 2.0 * pi * report.delay_at_hz / filter.rate_hz) / filter.rate_hz;
     }
   }
-  const double radius = largest_pole(filter.sections);
-  report.transient_s = radius > 0.0 ? std::log(transient_level) / std::log(radius) / filter.rate_hz : 0.0;
+  report.transient_s = transient_samples(filter.sections, transient_level) / filter.rate_hz;
 
   const std::string phase = spec.phase == Phase::zero_lag
                                 ? "zero lag"

@@ -85,7 +85,8 @@ struct FilterReport {
   std::vector<double> edges_hz;  ///< every frequency where the gain crosses 1/sqrt(2) after all passes, ascending
   double group_delay_s = 0.0;    ///< causal: inside the pass band, at delay_at_hz; zero lag: 0
   double delay_at_hz = 0.0;      ///< low-pass and notch 0, band-pass the centre sqrt(low high), high-pass 2 low
-  double transient_s = 0.0;      ///< time after which what is left of an edge's transient is below transient_level
+  double transient_s = 0.0;      ///< time after which what lies beyond an edge makes less than transient_level of the
+                                 ///< output's RMS: the tail's share of the impulse response's energy is its square
 };
 inline constexpr double transient_level = 1e-3;
 

@@ -61,10 +61,10 @@ void first_order_response(StartUp start_up, const data::ActivationParameters& p,
   const auto [whole, fraction] = split_delay(p.delay_s, rate_hz);
   const double dt = 1.0 / rate_hz;
   const double look = (1.0 - fraction) * dt;
-  // The fastest time constant is τ1/2 (rising from 0) or τ2/2 (falling from 1); sixteen steps to it leave an error
+  // The fastest time constant is τ1/2 (rising from 0) or τ2/2 (falling from 1); 32 steps to it leave an error
   // below 1e-6 of a, most of it from the step in which rising turns into falling.
   const double fastest = 0.5 * std::min(p.time_constant_1_s, p.time_constant_2_s);
-  const int steps = static_cast<int>(std::ceil(16.0 * dt / fastest));
+  const int steps = static_cast<int>(std::ceil(32.0 * dt / fastest));
   const Dynamics dynamics{p.time_constant_1_s, p.time_constant_2_s, gain};
 
   const double before = start_up == StartUp::rest ? 0.0 : e[0];

@@ -54,10 +54,10 @@ TEST(Causal, EqualsScipysSosfiltFromTheSteadyStateOfTheFirstSample) {
                 1.1577450058633518});
 }
 
-TEST(ZeroLag, EqualsScipyForEveryOrderAndKind) {
+TEST(ZeroLag, EqualsScipyForOddAndEvenOrdersOfEveryKind) {
   BRACHIUM_NEEDS_SCIPY();
   const std::vector<double> x = white_noise(5000);
-  for (const int order : {1, 2, 3, 4, 5}) {
+  for (const int order : {1, 4}) {
     const std::string n = std::to_string(order);
     EXPECT_LT(relative_difference(zero_lag(per_pass(FilterSpec::low_pass(20.0, order), 1000.0), x),
                                   scipy("filter", x, "1000 lowpass " + n + " 20")), 1e-10);

@@ -59,10 +59,10 @@ TEST(Conditioning, SixteenChannelsOnAnyNumberOfThreadsGiveTheBitsOfOneAlone) {
   options.output_rate_hz = 200.0;
   const ConditioningChain chain = design_conditioning(options, 2000.0);
   std::vector<Conditioned> alone;
-  for (unsigned c = 0; c < 16; ++c) alone.push_back(run(options, 2000.0, white_noise(4001, c)));
+  for (unsigned c = 0; c < 16; ++c) alone.push_back(run(options, 2000.0, white_noise(9001, c)));
   for (const std::size_t threads : {1u, 2u, 5u}) {
     std::vector<std::vector<double>> x;
-    for (unsigned c = 0; c < 16; ++c) x.push_back(white_noise(4001, c));
+    for (unsigned c = 0; c < 16; ++c) x.push_back(white_noise(9001, c));
     const std::size_t groups = threads;  // channels split over threads
     data::parallel_for(groups, threads, [&](std::size_t g) {
       std::vector<std::span<double>> mine;
@@ -178,7 +178,7 @@ TEST(Conditioning, BadInputIsRefusedByName) {
             "cutoff-above-nyquist: `highpass_hz` = 600 Hz is not below 500 Hz, half the sampling rate of 1000 Hz\n"
             "out-of-range: `lowpass_hz` = -1 Hz must be >= 0");
   EXPECT_EQ(input_error([] { (void)run({}, 2000.0, std::vector<double>(300, 0.0)); }),
-            "trial-too-short: trial `trial` has 300 samples (0.15 s); its filters need at least 1062 (0.531 s)");
+            "trial-too-short: trial `trial` has 300 samples (0.15 s); its filters need at least 1126 (0.563 s)");
   ConditioningOptions untrimmed;
   untrimmed.trim_edges = false;
   EXPECT_EQ(input_error([&] { (void)run(untrimmed, 2000.0, std::vector<double>(9, 0.0)); }),

@@ -87,11 +87,14 @@ TEST(Recordings, BothDetectorsFindTheSameBurstsOfTheBiceps) {
   options.method = OnsetMethod::threshold;
   options.factor = 8.0;
   const OnsetResult amplitude = detect_onsets(x, 1000.0, 0.0, "biceps", options);
-  ASSERT_EQ(tkeo.bursts.size(), amplitude.bursts.size());
-  EXPECT_GE(tkeo.bursts.size(), 5u);
-  for (std::size_t i = 0; i < tkeo.bursts.size(); ++i) {
-    EXPECT_NEAR(tkeo.bursts[i].onset_s, amplitude.bursts[i].onset_s, 0.15);
-    EXPECT_NEAR(tkeo.bursts[i].offset_s, amplitude.bursts[i].offset_s, 0.30);
+  // Nine contractions. The first begins so softly that the two thresholds date it differently; of the others, none.
+  ASSERT_EQ(tkeo.bursts.size(), 9u);
+  ASSERT_EQ(amplitude.bursts.size(), 9u);
+  for (std::size_t i = 1; i < 9; ++i) EXPECT_NEAR(tkeo.bursts[i].onset_s, amplitude.bursts[i].onset_s, 0.05);
+  EXPECT_LT(tkeo.bursts[0].onset_s, amplitude.bursts[0].onset_s);
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_LT(std::max(tkeo.bursts[i].onset_s, amplitude.bursts[i].onset_s),
+              std::min(tkeo.bursts[i].offset_s, amplitude.bursts[i].offset_s));
   }
 }
 
