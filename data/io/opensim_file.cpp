@@ -152,7 +152,10 @@ Recording open_storage(const std::filesystem::path& file, StorageHeader* header_
     fail(file, "not-a-storage-file", text.label_line, "the first column must be `time`");
   }
   if (text.columns && *text.columns != labels.size()) {
-    fail(file, "column-count-mismatch", text.label_line, fmt::format("the header states {} columns, but {} are labelled", *text.columns, labels.size()));
+    // Programs that drop columns forget to count again. Nothing is lost: every row is held against the labels.
+    header.notes.push_back({Severity::warning, "column-count-mismatch",
+                            fmt::format("the header states {} columns, but {} are labelled", *text.columns, labels.size()),
+                            SourceSpan{file.string(), static_cast<int>(text.label_line), 0, 1, {}}, {}});
   }
   std::set<std::string> seen;
   for (std::size_t field = 1; field < labels.size(); ++field) {

@@ -25,9 +25,10 @@ struct StorageHeader {
   std::map<std::string, std::string> fields;  ///< every key=value of the header, as written
 };
 
-/// Opens a storage file. A stated row count that disagrees with the rows is an error found by check_timing; a stated
-/// column count that disagrees with the column labels is "column-count-mismatch" here.
-/// Throws InputError: "missing-file", "empty-file", "not-a-storage-file", "column-count-mismatch", "duplicate-column",
+/// Opens a storage file. A stated row count that disagrees with the rows is an error found by check_timing (the file may
+/// be cut off); a stated column count that disagrees with the column labels is a warning in the header's notes, since
+/// every row is held against the labels.
+/// Throws InputError: "missing-file", "empty-file", "not-a-storage-file", "duplicate-column",
 /// "unsupported-data-type" (DataType other than double), "unsupported-version".
 Recording open_storage(const std::filesystem::path& file, StorageHeader* header = nullptr);
 

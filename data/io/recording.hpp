@@ -100,7 +100,8 @@ enum class TimingRule {
 
 struct TimingOptions {
   TimingRule rule = TimingRule::strict;
-  std::optional<double> rate_hz = {};  ///< overrides what the file states; must agree with its time stamps, if any
+  std::optional<double> rate_hz = {};  ///< overrides what the file states; must agree with its time stamps, if any;
+                                       ///< with TimingRule::interpolate: the rate of the even grid
   bool ignore_stated_rows = false;  ///< a row count in the header that is wrong becomes a warning
 };
 

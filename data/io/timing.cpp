@@ -20,6 +20,7 @@ constexpr double jitter_tolerance = 0.1;     // [sample periods] a time stamp ma
 constexpr double rounding_tolerance = 0.01;  // [sample periods] rounding the rate to whole Hz may move a stamp
 constexpr double gap_factor = 1.5;           // [sample periods] a longer step is a gap
 
+constexpr double most_made_up = 10.0;        // samples a row may stand for when gaps are bridged
 constexpr std::size_t steps_for_median = 1000;
 
 SourceSpan line_of(const Recording& recording, std::size_t line) {
@@ -168,18 +169,26 @@ Timing check_timing(Recording& recording, const TimingOptions& options, std::vec
     timing.rate_hz = *stated;
     return timing;
   }
-  if (stated && !(std::abs(stamps.rate_hz / *stated - 1.0) <= rate_tolerance)) {
+  const bool bridging = options.rule == TimingRule::interpolate;
+  const bool new_rate = bridging && options.rate_hz.has_value();  // then it is the wanted rate, not a claim about the file
+  if (stated && !new_rate && !(std::abs(stamps.rate_hz / *stated - 1.0) <= rate_tolerance)) {
     throw InputError("rate-mismatch",
                      fmt::format("`{}`: the rate is stated as {:.6g} Hz, but the time stamps run at {:.6g} Hz", file, *stated, stamps.rate_hz),
                      "correct the stated rate, or leave it out");
   }
-  timing.rate_hz = stated ? *stated : rounded_rate(stamps.rate_hz, stamps.rows);
+  timing.rate_hz = stated && !new_rate ? *stated : rounded_rate(stamps.rate_hz, stamps.rows);
   const std::size_t jitter_line = compare_with_grid(recording, timing);
-  if (options.rule == TimingRule::strict) {
+  if (!bridging) {
     refuse_uneven(recording, timing, jitter_line);
     return timing;
   }
-  timing.samples = static_cast<std::size_t>(std::floor((stamps.last - stamps.first) * timing.rate_hz + 1e-6)) + 1;
+  if (new_rate) timing.rate_hz = *options.rate_hz;
+  const double samples = std::floor((stamps.last - stamps.first) * timing.rate_hz + 1e-6) + 1.0;
+  if (!(samples <= most_made_up * static_cast<double>(stamps.rows))) {
+    throw InputError("time-gap", fmt::format("`{}`: {} rows cannot be bridged to {:.6g} samples at {:.6g} Hz", file, stamps.rows, samples, timing.rate_hz),
+                     "give a lower `rate_hz`, or cut the recording at its gaps");
+  }
+  timing.samples = static_cast<std::size_t>(samples);
   const bool gaps = timing.gaps > 0;
   if (gaps || timing.largest_jitter > jitter_tolerance) {
     warnings.push_back({Severity::warning, gaps ? "time-gap" : "time-jitter",

@@ -116,6 +116,18 @@ TEST(Timing, GapsAndJitterMayBeBridgedByStraightLinesWithAWarning) {
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(signals[0].samples[i], static_cast<double>(i), 1e-12);
 }
 
+TEST(Timing, BridgingMayChooseTheRateButNotMakeUpARecording) {
+  const auto dir = scratch_dir();
+  write_file(dir / "a.csv", "time,a\n0,0\n0.3,3\n0.5,5\n1.1,11\n");
+  Recording recording = open_csv(dir / "a.csv", {.time_column = "time"});
+  const auto signals = read_all(recording, {.rule = TimingRule::interpolate, .rate_hz = 10.0});
+  ASSERT_EQ(signals[0].samples.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(signals[0].samples[i], static_cast<double>(i), 1e-12);
+  EXPECT_EQ(error_of([&] { read_all(recording, {.rule = TimingRule::interpolate, .rate_hz = 1000.0}); }, dir),
+            "error[time-gap]: `a.csv`: 4 rows cannot be bridged to 1101 samples at 1000 Hz\n"
+            "  help: give a lower `rate_hz`, or cut the recording at its gaps\n");
+}
+
 TEST(Timing, RoundedTimeStampsGiveTheWholeRate) {
   std::string text = "time,a\n";
   for (int i = 0; i < 500; ++i) text += std::to_string(i / 120.0) + "," + std::to_string(i) + "\n";
@@ -196,8 +208,9 @@ TEST(Storage, BadInputIsNamed) {
   EXPECT_EQ(storage_error("x\nnRows=3\nendheader\ntime\ta\n0\t1\n0.1\t2\n"),
             "error[row-count-mismatch]: `a.sto` states 3 rows but has 2\n"
             "  help: the file may be cut off; if it is whole, say `ignore_stated_rows = true`\n");
-  EXPECT_EQ(storage_error("x\nnColumns=3\nendheader\ntime\ta\n0\t1\n"),
-            "error[column-count-mismatch]: the header states 3 columns, but 2 are labelled\n  --> a.sto:4\n");
+  const Recording wrong_count = open_storage(write_file(scratch_dir() / "a.sto", "x\nnColumns=3\nendheader\ntime\ta\n0\t1\n"));
+  ASSERT_EQ(wrong_count.header().notes.size(), 1u);
+  EXPECT_EQ(wrong_count.header().notes[0].message, "the header states 3 columns, but 2 are labelled");
   EXPECT_THAT(storage_error("x\nDataType=Vec3\nendheader\ntime\ta\n0\t1,2,3\n"),
               HasSubstr("error[unsupported-data-type]: columns of type `Vec3` cannot be read\n  --> a.sto:2\n"));
   EXPECT_THAT(storage_error("x\nendheader\ntime\ta\ta\n0\t1\t2\n"), HasSubstr("error[duplicate-column]: there are two columns `a`"));

@@ -276,7 +276,7 @@ TEST(SessionFile, MissingOrForeignContentIsNamed) {
   const auto remove = [](const char* object, const char* attribute) {
     return [=](hid_t file) { H5Adelete_by_name(file, object, attribute, H5P_DEFAULT); };
   };
-  const std::string help = "  help: the layout is described in data/README.md; import the recordings again\n";
+  const std::string help = "  help: the layout is described in data/io/README.md; import the recordings again\n";
   EXPECT_EQ(error_after(dir, remove("/", "format")),
             "error[wrong-format]: `s.h5`: this HDF5 file is not a Brachium session (no attribute `format` = `brachium-session`)\n"
             "  help: import the recordings with a session description (.toml) first\n");
