@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -103,7 +103,9 @@ GravityModel fit_gravity(const DynamometerRecord& passive, const PassiveSweepOpt
   }
   const VectorXd x = a.colPivHouseholderQr().solve(t);
   const VectorXd residual = t - a * x;
-  const Eigen::VectorXd singular = (a * a.colwise().norm().cwiseInverse().asDiagonal()).eval().jacobiSvd().singularValues();
+  const Eigen::MatrixXd scaled = a * a.colwise().norm().cwiseInverse().asDiagonal();
+  // Singular values of the tall matrix from its small normal matrix: good enough for a figure that warns.
+  const VectorXd squares = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled.transpose() * scaled).eigenvalues();
   GravityModel g;
   g.cos_N_m = x(0);
   g.sin_N_m = x(1);
@@ -113,7 +115,7 @@ GravityModel fit_gravity(const DynamometerRecord& passive, const PassiveSweepOpt
   Index worst = 0;
   g.worst_residual_N_m = residual.cwiseAbs().maxCoeff(&worst);
   g.worst_angle_rad = passive.angle_rad(used[static_cast<std::size_t>(worst)]);
-  g.condition_number = singular(0) / singular(terms - 1);
+  g.condition_number = std::sqrt(squares(terms - 1) / std::max(squares(0), 1e-300));
   g.origin = fmt::format("fitted to a passive sweep from {:.4g} to {:.4g} deg, rms residual {:.3g} N m (passive tissue included)",
                          lowest * degrees, highest * degrees, g.rms_residual_N_m);
   return g;

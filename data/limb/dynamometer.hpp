@@ -12,7 +12,8 @@
 /// | e, l     | -          | m      | joint centre from the machine's axis; machine axis to pad                     |
 ///
 /// Equation of motion of limb and machine arm, I q'' = M + G(q) - T_l, hence M = T_l - G(q) + I q''
-/// (Winter, Wells & Orr 1981, doi:10.1007/BF02332769; Herzog 1988, doi:10.1016/0021-9290(88)90146-6).
+/// (Winter, Wells & Orr 1981, Eur J Appl Physiol 46; Herzog 1988, J Biomech 21: gravity and inertia are what sets the
+/// machine's torque apart from the joint's moment, next to a limb that gives way in its straps, which is not modelled).
 /// Passive tissue is part of M where G is computed from masses, and part of G where G is fitted to a passive sweep.
 
 #include <Eigen/Core>

@@ -40,6 +40,24 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { retur
 
 }  // namespace
 
+Eigen::MatrixXd stacked(std::span<const data::Signal> components) {
+  if (components.empty()) throw InputError("wrong-size", "no signals to put together");
+  const data::SignalInfo& first = components.front().info;
+  Eigen::MatrixXd rows(static_cast<Index>(components.size()), static_cast<Index>(first.count));
+  for (std::size_t r = 0; r < components.size(); ++r) {
+    const data::SignalInfo& info = components[r].info;
+    if (info.rate_hz != first.rate_hz || info.start_time_s != first.start_time_s || info.count != first.count) {
+      throw InputError("rates-disagree", fmt::format("signals `{}` and `{}` belong together, but differ in rate, start or length "
+                                                     "({:.6g} and {:.6g} Hz, {:.6g} and {:.6g} s, {} and {} samples)",
+                                                     first.name, info.name, first.rate_hz, info.rate_hz, first.start_time_s,
+                                                     info.start_time_s, first.count, info.count),
+                       "resample one of them first");
+    }
+    for (std::size_t i = 0; i < components[r].samples.size(); ++i) rows(static_cast<Index>(r), static_cast<Index>(i)) = components[r].samples[i];
+  }
+  return rows;
+}
+
 ForearmMotion motion_from_orientation(const Eigen::Matrix4Xd& q, double rate_hz, const OrientationConvention& convention) {
   ForearmMotion m;
   m.rate_hz = rate_hz;
@@ -104,6 +122,20 @@ DirectionAgreement compare_directions(const Eigen::Matrix3Xd& a, const Eigen::Ma
   }
   r.mean_deg = sum / static_cast<double>(a.cols());
   r.rms_deg = std::sqrt(squares / static_cast<double>(a.cols()));
+  return r;
+}
+
+ImpliedInclination implied_inclination(const ForearmMotion& motion, const Eigen::VectorXd& angle) {
+  if (motion.direction.cols() != angle.size() || angle.size() == 0) {
+    throw InputError("wrong-size", fmt::format("{} directions of the forearm but {} elbow angles", motion.direction.cols(), angle.size()));
+  }
+  ImpliedInclination r;
+  for (Index i = 0; i < angle.size(); ++i) {
+    const double inclination = angle_between(motion.direction.col(i), -motion.up) - angle(i);
+    r.mean_rad += inclination / static_cast<double>(angle.size());
+    r.lowest_rad = i == 0 ? inclination : std::min(r.lowest_rad, inclination);
+    r.highest_rad = i == 0 ? inclination : std::max(r.highest_rad, inclination);
+  }
   return r;
 }
 

@@ -9,7 +9,10 @@
 /// | b      | long_axis  | 1    | the forearm's long axis in the segment's own frame   |
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
+
+#include "data/model/signal.hpp"
 
 namespace brachium::limb {
 
@@ -27,6 +30,10 @@ struct ForearmMotion {
   Eigen::Vector3d up{0.0, 0.0, 1.0};
   std::string origin;          ///< one sentence for reports: where this came from
 };
+
+/// Signals that belong together (components of a point, of a quaternion) as the rows of a matrix. Throws
+/// InputError("rates-disagree") where rate, start time or count differ, naming both signals, or ("wrong-size").
+Eigen::MatrixXd stacked(std::span<const data::Signal> components);
 
 /// u = R(quaternion) b. Quaternions are 4 x n, rows x, y, z, w. Throws InputError("not-finite"), ("bad-quaternion")
 /// for a norm further than 1e-3 from 1 (sample named), ("out-of-range") for a vector of no length.
@@ -49,6 +56,15 @@ struct DirectionAgreement {
   Eigen::Index worst_sample = 0;
 };
 DirectionAgreement compare_directions(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b);
+
+/// Inclination of the upper arm that a forearm's direction and the elbow angle together imply, from straight down:
+/// elevation of the forearm minus flexion. Far from constant: the upper arm moved, or angle and direction disagree.
+struct ImpliedInclination {
+  double mean_rad = 0.0;
+  double lowest_rad = 0.0;
+  double highest_rad = 0.0;
+};
+ImpliedInclination implied_inclination(const ForearmMotion& motion, const Eigen::VectorXd& angle_rad);
 
 /// The long axis that a recording itself shows: mean of R^T u over the trial, with its scatter.
 struct LongAxisEstimate {

@@ -28,12 +28,16 @@
 
 #include "data/limb/bodies.hpp"
 #include "data/limb/forearm_motion.hpp"
+#include "data/model/table.hpp"
 
 namespace brachium::limb {
 
 struct InverseDynamicsOptions {
   double cutoff_hz = 3.0;                 ///< low-pass of the motion, see data/limb/smoothing.hpp
   bool use_elbow_acceleration = true;     ///< where the elbow's trajectory is known
+  /// Further than this out of the trial's mean plane (15 deg), the subject turned or reached sideways: the flexion axis
+  /// is then not known, and `usable` says so.
+  double max_plane_deviation_rad = 0.26;
 };
 
 /// One source of uncertainty: its share of M at each instant is alpha A + beta B.
@@ -50,6 +54,9 @@ struct JointMoment {
   Eigen::VectorXd inertial_part_N_m;     ///< I B
   Eigen::VectorXd elbow_part_N_m;        ///< S n . (u x a)
   Eigen::VectorXd elevation_rad;
+  Eigen::VectorXd plane_deviation_rad;   ///< of u from the trial's mean vertical plane, signed
+  Eigen::VectorXd usable;                ///< 1, or 0 at the edges and out of the plane; fits should leave those out
+  Eigen::Index out_of_plane_samples = 0;
   Eigen::VectorXd sd_N_m;                ///< standard uncertainty of M from masses, distances and inertias
   std::vector<MomentContributor> contributors;  ///< largest first
   double first_moment_kg_m = 0.0;        ///< S
@@ -57,7 +64,11 @@ struct JointMoment {
   Eigen::Index edge_samples = 0;         ///< at each end, where smoothing leans on the record's continuation
 };
 
-/// Throws InputError as smooth() does, and "wrong-size" if direction and elbow differ in length.
+/// Throws InputError as smooth() does, "wrong-size" if direction and elbow differ in length, "no-forward-direction" if
+/// the trial has no mean plane, "out-of-range" for a plane deviation that is not above 0.
 JointMoment inverse_dynamics_moment(const ForearmMotion& motion, const BodySet& bodies, const InverseDynamicsOptions& options);
+
+/// The contributors as a table: name, root mean square share [N m], and that share relative to the moment's [%].
+data::Table contributor_table(const JointMoment& moment);
 
 }  // namespace brachium::limb

@@ -122,8 +122,17 @@ TEST(InverseDynamics, StaysContinuousWhereTheForearmHangsSidewaysOrPassesTheVert
   }
   limb::InverseDynamicsOptions options;
   options.cutoff_hz = 10.0;
+  options.max_plane_deviation_rad = 20 * degree;
   const limb::JointMoment m = limb::inverse_dynamics_moment(motion, arm(), options);
   const double weight = arm().first_moment_kg_m() * g;
+  EXPECT_EQ(m.out_of_plane_samples, 0);
+  EXPECT_NEAR(m.plane_deviation_rad(1100), -15 * degree, 0.01) << "forward x up points to the other side";
+  options.max_plane_deviation_rad = 10 * degree;
+  const limb::JointMoment strict = limb::inverse_dynamics_moment(motion, arm(), options);
+  EXPECT_GT(strict.out_of_plane_samples, 150);
+  EXPECT_EQ(strict.usable(1100), 0.0);
+  EXPECT_EQ(strict.usable(500), 1.0);
+  EXPECT_EQ(strict.usable.sum(), static_cast<double>(2000 - strict.out_of_plane_samples - 2 * strict.edge_samples));
   for (Index i = 1040; i < 1360; ++i) {
     EXPECT_LT(std::abs(m.gravity_part_N_m(i) - m.gravity_part_N_m(i - 1)), 0.01 * weight);
     const double forward = std::sin(15 * degree) * std::cos(2 * std::numbers::pi * static_cast<double>(i - 1000) / 400.0);
@@ -174,6 +183,10 @@ TEST(InverseDynamics, UncertaintyIsTheFirstOrderPropagationOfEveryAssumedNumber)
   EXPECT_NEAR(sum, m.sd_N_m.squaredNorm() / static_cast<double>(m.sd_N_m.size()), 1e-12);
   EXPECT_EQ(m.contributors[0].name, "distance of dumbbell");  // 2 kg x 15 mm; the body mass follows with 27.6 g m
   EXPECT_EQ(m.contributors[1].name, "body mass");
+  EXPECT_EQ(limb::contributor_table(m).texts("assumed number").front(), "distance of dumbbell");
+  const limb::ImpliedInclination upper_arm = limb::implied_inclination(motion, curl.q);
+  EXPECT_NEAR(upper_arm.mean_rad, 0.0, 1e-12);
+  EXPECT_LT(upper_arm.highest_rad - upper_arm.lowest_rad, 1e-12);
 }
 
 std::string message_of(const std::function<void()>& action) {
@@ -196,6 +209,21 @@ TEST(InverseDynamics, RefusesOrientationsAndPointsThatCannotBe) {
             "out-of-range: elbow and distal point are 0 mm apart at sample 0");
   EXPECT_EQ(message_of([&] { limb::motion_from_points(points, points.leftCols(2), 200.0); }),
             "wrong-size: 3 elbow points but 2 distal points");
+}
+
+TEST(InverseDynamics, PutsComponentsTogetherOnlyIfTheyShareAClock) {
+  data::Signal x, y;
+  x.info = {"elbow_x", data::Quantity::position, "m", 200.0, 0.0, 3, "", "", {}};
+  x.samples = {1.0, 2.0, 3.0};
+  y = x;
+  y.info.name = "elbow_y";
+  const std::vector<data::Signal> good{x, y};
+  EXPECT_EQ(limb::stacked(good)(1, 2), 3.0);
+  y.info.rate_hz = 100.0;
+  const std::vector<data::Signal> bad{x, y};
+  EXPECT_EQ(message_of([&] { limb::stacked(bad); }),
+            "rates-disagree: signals `elbow_x` and `elbow_y` belong together, but differ in rate, start or length (200 and 100 Hz, 0 and "
+            "0 s, 3 and 3 samples)");
 }
 
 // Columns after the time of one export of the recorder: two metadata rows, a blank line, a header row.
