@@ -63,7 +63,7 @@ class EquilibriumSolver {
       const double slope = t.slope * k_.per_ls + q.Q_z + p.alpha * q.Q_w;  // -dR/dz
       (residual > 0.0 ? lower : upper) = z;
       const double step = residual / slope;
-      if (slope > 0.0 && std::abs(step) <= kStepTolerance * k_.lo) {
+      if (slope > 0.0 && std::abs(step) <= kStepTolerance * k_.lo && std::abs(residual) <= kResidualTolerance) {
         // What remains is of the order of step squared, below rounding: f_t and l follow by one term of Taylor's series.
         e.z = z + step;
         e.tendon = t.value - t.slope * k_.per_ls * step;
@@ -72,7 +72,9 @@ class EquilibriumSolver {
         return e;
       }
       double next = z + step;
-      if (!(slope > 0.0 && next > lower && next < upper)) {
+      // Late in the search every other step halves the bracket: Newton alone creeps down a steep exponential.
+      const bool halve = e.evaluations > 8 && e.evaluations % 2 == 1;
+      if (halve || !(slope > 0.0 && next > lower && next < upper)) {
         if (lower == k_.z_min && !lower_checked) {
           lower_checked = true;
           if (!(residual_at(p, lower) > 0.0)) return slack();
@@ -98,7 +100,8 @@ class EquilibriumSolver {
 
  private:
   static constexpr int kMaxEvaluations = 200;
-  static constexpr double kStepTolerance = 1e-8;  // in optimal fibre lengths
+  static constexpr double kStepTolerance = 1e-8;      // in optimal fibre lengths
+  static constexpr double kResidualTolerance = 1e-4;  // in F0; a small step from a large residual is no convergence
 
   Equilibrium slack() const {
     Equilibrium e;

@@ -90,7 +90,7 @@ class MuscleScratch {
     arrays_[slot].resize(n);
     return arrays_[slot];
   }
-  SplineSlopes spline;
+  SplineSlopes spline;  ///< factors kept between calls
 
  private:
   std::array<std::vector<double>, kSlots> arrays_;

@@ -216,7 +216,7 @@ double worst_slope_error(const CurveSet& set, const Change& change) {
       hold(set.velocity(v, a).slope_activation, slope_of([&](double t) { return set.velocity(v, t).value; }, a, h));
     }
   }
-  for (const double e : kStrains) hold(set.tendon(e).slope, slope_of([&](double t) { return set.tendon(t).value; }, e, h));
+  for (const double e : kStrains) hold(set.tendon(e).slope, slope_of([&](double t) { return set.tendon(t).value; }, e, 0.1 * h));
   return worst;
 }
 
