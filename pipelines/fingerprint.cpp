@@ -39,6 +39,10 @@ std::string change_text(const std::string& key, const std::optional<std::string>
     const bool stage = !source(*is).starts_with("file:") && !source(*is).starts_with("recordings:");
     return fmt::format("input `{}` {}", source(*is), stage ? "ran again" : "has another content");
   }
+  if (group == "file") {
+    if (!was) return fmt::format("the recording `{}` is new", name);
+    return fmt::format("the recording `{}` {}", name, is ? "changed" : "is gone");
+  }
   if (group == "program") return fmt::format("the program changed {} -> {}", was.value_or("unknown"), is.value_or("unknown"));
   if (group == "stage") return fmt::format("it ran as {}, now as {}", was.value_or("unknown"), is.value_or("unknown"));
   if (group == "scene") return was && is ? "the scene changed" : is ? "a scene was added" : "the scene is gone";

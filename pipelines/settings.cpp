@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 
 #include "pipelines/options.hpp"
 
@@ -15,6 +16,9 @@ using data::Diagnostic;
 using data::Severity;
 using io::TomlNode;
 namespace fs = std::filesystem;
+
+/// The folder of recordings: a variable that a session description has as well.
+const std::string recordings = "recordings";
 
 std::vector<std::string> split(const std::string& key) {
   std::vector<std::string> parts(1);
@@ -102,11 +106,29 @@ class Applier {
     for (auto& [key, value] : root_.members) {
       if (key != "variables") substitute(value);
     }
+    // A misspelt key would otherwise pass for a variable that nobody uses.
+    for (const std::string& name : plain_) {
+      if (used_.contains(name) || (name == recordings && reads_description())) continue;
+      const std::vector<std::string> known{"pipeline", "variables", "stage", "expect"};
+      diagnostics_.push_back({Severity::error, "unknown-key", fmt::format("`{}` is not a key of a pipeline definition, nor a variable that a text uses", name),
+                              applied_.variables.find(name)->key_where, data::suggest(name, known)});
+    }
     return std::move(applied_);
   }
 
  private:
   void read_variables() {
+    // Plain values before the first table are variables too.
+    for (const auto& [name, node] : root_.members) {
+      const bool tables = node.kind == TomlNode::Kind::array && !node.items.empty() && node.items.front().kind == TomlNode::Kind::table;
+      if (node.kind == TomlNode::Kind::table || tables) continue;
+      plain_.push_back(name);
+      TomlNode& value = applied_.variables.member(name) = node;
+      if (name != recordings || node.kind != TomlNode::Kind::text) continue;
+      value.text = absolute_text(node.text, folder_);
+      if (reads_description()) applied_.session_overrides[name] = node_text(value);
+    }
+    std::erase_if(root_.members, [&](const auto& m) { return std::find(plain_.begin(), plain_.end(), m.first) != plain_.end(); });
     const TomlNode* table = root_.find("variables");
     if (!table || table->kind != TomlNode::Kind::table) return;
     for (const auto& [name, node] : table->members) {
@@ -150,13 +172,16 @@ class Applier {
     if (value.kind == TomlNode::Kind::text) absolute.text = absolute_text(value.text, current_);
     const bool declared = applied_.variables.find(key) || unset_.contains(key);
     if (declared) {
-      const bool is_path = std::find(paths_.begin(), paths_.end(), key) != paths_.end();
-      applied_.variables.member(key) = is_path ? absolute : value;
+      const bool is_path = key == recordings || std::find(paths_.begin(), paths_.end(), key) != paths_.end();
+      TomlNode& variable = applied_.variables.member(key);
+      const data::SourceSpan key_where = variable.key_where;
+      variable = is_path ? absolute : value;
+      variable.key_where = key_where;
       unset_.erase(key);
     }
     // The folder of recordings belongs to the session description, whether or not the pipeline names it as well.
-    if (reads_description() && (key == "recordings" || !declared)) {
-      applied_.session_overrides[key] = key == "recordings" ? node_text(absolute) : text;
+    if (reads_description() && (key == recordings || !declared)) {
+      applied_.session_overrides[key] = key == recordings ? node_text(absolute) : text;
     } else if (!declared) {
       unknown(key, value.where);
     }
@@ -211,6 +236,7 @@ class Applier {
   }
 
   const TomlNode* variable(const std::string& name, const data::SourceSpan& where) {
+    used_.insert(name);
     if (const TomlNode* value = applied_.variables.find(name)) return value;
     if (const auto unset = unset_.find(name); unset != unset_.end()) {
       if (used_unset_[name]) return nullptr;
@@ -232,6 +258,8 @@ class Applier {
   const fs::path folder_, current_;
   std::vector<Diagnostic>& diagnostics_;
   AppliedSettings applied_;
+  std::vector<std::string> plain_;            ///< variables that stand before the first table
+  std::set<std::string> used_;
   std::map<std::string, std::string> unset_;  ///< variables without a value, and their help
   std::map<std::string, bool> used_unset_;    ///< said once
   std::vector<std::string> paths_;

@@ -23,16 +23,18 @@ struct Template {
 const std::vector<Template>& templates() {
   static const std::vector<Template> all{
       {"emg", "From raw EMG to normalised excitations, with the quality of every channel.", false,
-       {{"quality", "emg.quality", ""}, {"excitation", "emg.envelope", ""}, {"onset", "emg.onset", ""}}},
+       {{"quality", "emg.quality", ""}, {"excitation", "emg.envelope", "input = { quality = \"quality\" }\n"}, {"onset", "emg.onset", ""}}},
       {"calibration",
        "From raw EMG and motion to a calibrated joint moment, its error on trials that the calibration never saw, and a subject to reuse.",
        true,
        {{"quality", "emg.quality", ""},
-        {"excitation", "emg.envelope", ""},
+        {"excitation", "emg.envelope", "input = { quality = \"quality\" }\n"},
         {"kinematics", "limb.kinematics", ""},
-        {"moment", "limb.inverse_dynamics", "input = { kinematics = \"kinematics\" }\n"},
-        {"verdict", "optimise.cross_validate", "input = { excitation = \"excitation\", kinematics = \"kinematics\", moment = \"moment\" }\n"},
-        {"subject", "optimise.calibrate", "input = { excitation = \"excitation\", kinematics = \"kinematics\", moment = \"moment\" }\n"}}}};
+        {"moment", "limb.inverse_dynamics", ""},
+        {"validation", "optimise.cross_validate", "input = { excitation = \"excitation\", kinematics = \"kinematics\", moment = \"moment\" }\n"},
+        {"subject", "optimise.calibrate", "input = { excitation = \"excitation\", kinematics = \"kinematics\", moment = \"moment\" }\n"},
+        {"activation", "emg.activation", "input = { excitation = \"excitation\", subject = \"subject\" }\n"},
+        {"fim", "hill.moment", "input = { activation = \"activation\", kinematics = \"kinematics\", subject = \"subject\" }\n"}}}};
   return all;
 }
 
