@@ -7,6 +7,10 @@
 #include <set>
 
 #include "data/limb/bodies.hpp"
+#include "data/limb/drive.hpp"
+#include "data/limb/muscle_path.hpp"
+#include "data/limb/drive.hpp"
+#include "data/limb/muscle_path.hpp"
 #include "data/model/error.hpp"
 #include "emg/random.hpp"
 #include "optimise/excitation_error.hpp"
@@ -15,10 +19,10 @@
 namespace brachium::optimise {
 namespace {
 
-using data::Quantity;
+using Recorded = data::Quantity;
 constexpr double kDeg = 3.14159265358979323846 / 180.0;
 
-data::Signal signal(const std::string& name, Quantity quantity, const std::string& unit, double rate_hz,
+data::Signal signal(const std::string& name, Recorded quantity, const std::string& unit, double rate_hz,
                     std::vector<double> samples) {
   data::Signal out;
   out.info.name = name;
@@ -105,13 +109,13 @@ void add_dynamometer(const data::Scene& scene, const std::string& coordinate, co
     const double gravity = -S * limb::standard_gravity_m_per_s2 * std::sin(traces.angle_rad[i] + scene.upper_arm_inclination_rad);
     torque[i] = moment[i] + gravity - I * acceleration;
   }
-  const auto add = [&](const char* name, Quantity quantity, const char* unit, std::vector<double> samples) {
+  const auto add = [&](const char* name, Recorded quantity, const char* unit, std::vector<double> samples) {
     trial.signals.push_back(signal(name, quantity, unit, rate, std::move(samples)));
     trial.signals.back().info.coordinate = coordinate;
   };
-  add("dynamometer_torque", Quantity::dynamometer_torque, "N m", std::move(torque));
-  add("dynamometer_angle", Quantity::dynamometer_angle, "rad", traces.angle_rad);
-  add("dynamometer_velocity", Quantity::dynamometer_velocity, "rad/s", traces.velocity_rad_s);
+  add("dynamometer_torque", Recorded::dynamometer_torque, "N m", std::move(torque));
+  add("dynamometer_angle", Recorded::dynamometer_angle, "rad", traces.angle_rad);
+  add("dynamometer_velocity", Recorded::dynamometer_velocity, "rad/s", traces.velocity_rad_s);
 }
 
 data::TrialKind kind_of(const TwinTrial& trial) {
@@ -174,11 +178,11 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
       const auto gain = options.channel_gains.find(drive.channels[k]);
       if (gain != options.channel_gains.end())
         for (double& value : e) value /= gain->second;
-      chain.excitations.push_back(signal(drive.channels[k], Quantity::excitation, "1", options.excitation_rate_hz, std::move(e)));
+      chain.excitations.push_back(signal(drive.channels[k], Recorded::excitation, "1", options.excitation_rate_hz, std::move(e)));
     }
-    chain.angle = signal("joint_angle", Quantity::joint_angle, "rad", options.motion_rate_hz, traces.angle_rad);
-    chain.velocity = signal("joint_velocity", Quantity::joint_velocity, "rad/s", options.motion_rate_hz, traces.velocity_rad_s);
-    chain.moment = signal("joint_moment", Quantity::joint_moment, "N m", options.motion_rate_hz,
+    chain.angle = signal("joint_angle", Recorded::joint_angle, "rad", options.motion_rate_hz, traces.angle_rad);
+    chain.velocity = signal("joint_velocity", Recorded::joint_velocity, "rad/s", options.motion_rate_hz, traces.velocity_rad_s);
+    chain.moment = signal("joint_moment", Recorded::joint_moment, "N m", options.motion_rate_hz,
                           std::vector<double>(traces.angle_rad.size(), 0.0));
     chain.angle.info.coordinate = chain.velocity->info.coordinate = chain.moment.info.coordinate = q;
     CalibrationProblemOptions problem_options;
@@ -197,13 +201,13 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
     for (const auto& excitation : chain.excitations) truth.signals.push_back(excitation);
     for (const MuscleTraces& m : problem.muscle_traces(0, Eigen::VectorXd())) {
       for (std::size_t i = 0; i < moment.size(); ++i) moment[i] += m.moment_N_m[i];
-      const auto add = [&](const char* suffix, Quantity quantity, const char* unit, const std::vector<double>& samples) {
+      const auto add = [&](const char* suffix, Recorded quantity, const char* unit, const std::vector<double>& samples) {
         truth.signals.push_back(signal(m.muscle + suffix, quantity, unit, options.motion_rate_hz, samples));
         truth.signals.back().info.muscle = m.muscle;
       };
-      add(".activation", Quantity::activation, "1", m.activation);
-      add(".force", Quantity::muscle_force, "N", m.force_N);
-      add(".moment", Quantity::joint_moment, "N m", m.moment_N_m);
+      add(".activation", Recorded::activation, "1", m.activation);
+      add(".force", Recorded::muscle_force, "N", m.force_N);
+      add(".moment", Recorded::joint_moment, "N m", m.moment_N_m);
     }
     truth.signals.push_back(chain.moment);
     truth.signals.back().samples = moment;
@@ -215,7 +219,7 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
         electrode.stream = ((static_cast<std::uint64_t>(t) + 1) << 16) + 1000 + k;
         electrode.amplitude_V *= std::exp2(2.0 * emg::Random(options.seed, 500 + k).uniform() - 1.0);
         auto emg = emg::synthesise_emg(chain.excitations[k].samples, options.excitation_rate_hz, electrode);
-        recorded.signals.push_back(signal(drive.channels[k], Quantity::emg, "V", electrode.rate_hz, std::move(emg.raw)));
+        recorded.signals.push_back(signal(drive.channels[k], Recorded::emg, "V", electrode.rate_hz, std::move(emg.raw)));
       }
     }
     recorded.signals.push_back(chain.angle);
@@ -227,7 +231,7 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
       for (std::size_t i = 0; i < moment.size(); ++i) moment[i] += options.moment_noise_sd_N_m * noise[i];
       if (options.dynamometer)
         for (data::Signal& s : recorded.signals)
-          if (s.info.quantity == Quantity::dynamometer_torque)
+          if (s.info.quantity == Recorded::dynamometer_torque)
             for (std::size_t i = 0; i < moment.size(); ++i) s.samples[i] += options.moment_noise_sd_N_m * noise[i];
     }
     recorded.signals.push_back(chain.moment);
@@ -245,7 +249,7 @@ std::vector<CalibrationTrial> noise_free_trials(const Twin& twin, const std::str
   for (std::size_t t = 0; t < twin.recordings.trials.size(); ++t) {
     data::Trial joined = twin.recordings.trials[t];
     for (const data::Signal& s : twin.truth.trials[t].signals)
-      if (s.info.quantity == Quantity::excitation) joined.signals.push_back(s);
+      if (s.info.quantity == Recorded::excitation) joined.signals.push_back(s);
     out.push_back(calibration_trial(joined, coordinate));
   }
   return out;

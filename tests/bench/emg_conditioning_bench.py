@@ -33,11 +33,11 @@ def main():
     low = signal.butter(2, 6, "lowpass", fs=2000, output="sos")
     best = np.inf
     for _ in range(5):
-        start = time.perf_counter()
+        start = time.process_time()
         reference = chain(channels, high, low)
-        best = min(best, time.perf_counter() - start)
+        best = min(best, time.process_time() - start)
     print(text, end="")
-    print(f"scipy, channel by channel: {best:.6f} s (best of 5)")
+    print(f"scipy, channel by channel: {best:.6f} s CPU (best of 5)")
     print(f"ratio {best / ours_s:.1f}; largest relative difference {np.abs(ours - reference).max() / reference.max():.1e}")
 
 

@@ -1,0 +1,134 @@
+#pragma once
+/// One seed of the stochastic twin: EMG as modulated noise with sensor noise, conditioned as recordings are, and what a
+/// calibration makes of it. Shared by the test (10 seeds) and the coverage benchmark (100 seeds).
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "emg/conditioning.hpp"
+#include "emg/synthetic_emg.hpp"
+#include "optimise/calibration.hpp"
+#include "optimise/excitation_error.hpp"
+#include "optimise/twin.hpp"
+
+namespace brachium::optimise::tests {
+
+/// Envelopes of one trial's channels: the known maximum (a maximal contraction without error) divides, the noise floor of
+/// rest is taken off in the mean square.
+inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth, const emg::SyntheticEmgOptions& electrode,
+                                                      std::uint64_t seed, std::uint64_t trial, double rate_hz) {
+  emg::ConditioningOptions conditioning;
+  conditioning.output_rate_hz = rate_hz;
+  conditioning.trim_edges = true;
+  const emg::ConditioningChain chain = emg::design_conditioning(conditioning, electrode.rate_hz);
+  const auto envelope = [&](std::vector<double> raw, emg::OutputLayout& layout) {
+    const std::vector<std::span<double>> spans = {raw};
+    const std::vector<std::string> names = {"emg"};
+    layout = emg::condition(chain, spans, names, truth.name);
+    raw.resize(layout.count);
+    return raw;
+  };
+  const auto mean = [](const std::vector<double>& x) {
+    double sum = 0.0;
+    for (double v : x) sum += v / static_cast<double>(x.size());
+    return sum;
+  };
+  // One long record of the electrode at full effort and one at rest: the unit, and the floor, without error.
+  static const std::pair<double, double> levels = [&] {
+    emg::SyntheticEmgOptions clean = electrode;
+    clean.sensor_noise = false;
+    clean.seed = 987;
+    emg::OutputLayout layout;
+    const double at_one = mean(envelope(emg::synthesise_emg(std::vector<double>(60000, 1.0), 200.0, clean).raw, layout));
+    emg::SyntheticEmgOptions rest = electrode;
+    rest.seed = 987;
+    return std::pair{at_one, mean(envelope(emg::synthesise_emg(std::vector<double>(60000, 0.0), 200.0, rest).raw, layout)) / at_one};
+  }();
+  const auto [unit, floor] = levels;
+  std::vector<data::Signal> out;
+  for (const data::Signal& signal : truth.signals) {
+    if (signal.info.quantity != data::Quantity::excitation) continue;
+    emg::SyntheticEmgOptions own = electrode;
+    own.seed = seed;
+    own.stream = (trial << 16) + out.size();
+    emg::OutputLayout layout;
+    data::Signal s = signal;
+    s.samples = envelope(emg::synthesise_emg(signal.samples, signal.info.rate_hz, own).raw, layout);
+    for (double& v : s.samples) v = std::sqrt(std::max(std::pow(v / unit, 2) - floor * floor, 0.0));
+    s.info.rate_hz = rate_hz;
+    s.info.start_time_s = signal.info.start_time_s + layout.start_shift_s;
+    s.info.count = s.samples.size();
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+/// Coefficient of variation of these envelopes: the electrode's spectrum after the 30 Hz high-pass.
+inline double stochastic_cv(const emg::SyntheticEmgOptions& o) {
+  std::vector<double> f, p;
+  for (int i = 0; i < 430; ++i) {
+    const double x = o.band_low_hz + i + 0.5, r = 30.0 / x * std::pow(std::sqrt(2.0) - 1.0, 0.25);
+    f.push_back(x);
+    p.push_back(x * x / ((x * x + o.spectrum_low_hz * o.spectrum_low_hz) * std::pow(x * x + o.spectrum_high_hz * o.spectrum_high_hz, 2)) *
+                std::pow(1.0 + std::pow(r, 4), -2));
+  }
+  return envelope_coefficient_of_variation(f, p, 6.0);
+}
+
+struct StochasticOutcome {
+  CalibrationResult result;
+  Eigen::VectorXd truth;
+};
+
+/// Strength and slack-length factor by group, one delay, one shape; three random trials and ramps, known maximum, 20 dB,
+/// 0.3 N m of noise in the reference.
+inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t seed, int replicates, bool correct = true) {
+  TwinOptions options;
+  options.seed = seed;
+  options.raw_emg = false;
+  options.moment_noise_sd_N_m = 0.3;
+  for (const auto& [name, programme, angle] :
+       {std::tuple{"random-1", Programme::random, 0.0}, std::tuple{"random-2", Programme::random, 0.0},
+        std::tuple{"random-3", Programme::random, 0.0}, std::tuple{"ramp", Programme::isometric_ramp, 1.2}}) {
+    TwinTrial t;
+    t.name = name;
+    t.programme = programme;
+    t.duration_s = 15.0;
+    t.lower_rad = angle > 0.0 ? angle : 0.35;
+    t.upper_rad = angle > 0.0 ? angle : 2.1;
+    t.effort = 0.7;
+    options.trials.push_back(t);
+  }
+  options.motion_rate_hz = options.excitation_rate_hz = 100.0;
+  emg::SyntheticEmgOptions electrode;
+  electrode.sensor_noise = true;
+  electrode.snr_db = 20.0;
+  const Twin twin = make_twin(scene, options);
+  std::vector<CalibrationTrial> trials = noise_free_trials(twin, scene.coordinates[0].name);
+  for (std::size_t t = 0; t < trials.size(); ++t)
+    trials[t].excitations = stochastic_envelopes(twin.truth.trials[t], electrode, seed, t + 1, 100.0);
+
+  CalibrationOptions calibration;
+  for (const auto& [quantity, scope] : {std::pair{Quantity::strength, Scope::group}, std::pair{Quantity::tendon_slack_length, Scope::group},
+                                        std::pair{Quantity::delay, Scope::global}, std::pair{Quantity::shape, Scope::global}}) {
+    FreeQuantity f;
+    f.quantity = quantity;
+    f.scope = scope;
+    calibration.problem.free.push_back(f);
+  }
+  calibration.problem.edge_s = 0.25;
+  calibration.problem.decimate = 2;
+  calibration.excitation_noise.coefficient_of_variation = stochastic_cv(electrode);
+  calibration.excitation_noise.cutoff_hz = 6.0;
+  calibration.excitation_noise.replicates = replicates;
+  calibration.excitation_noise.steps = 2;
+  calibration.correct_bias = correct;
+  StochasticOutcome out;
+  out.result = calibrate(scene, trials, calibration);
+  out.truth = start_of(out.result.parameters);  // the scene is the truth
+  return out;
+}
+
+}  // namespace brachium::optimise::tests
