@@ -11,13 +11,34 @@
 namespace brachium::emg {
 namespace {
 
+// Sum in eight interleaved parts, so that additions need not wait for each other, in blocks, so that the rounding error
+// does not grow with the length. The order of additions is fixed: the same bits everywhere.
+template <class Term>
+double blocked_sum(std::span<const double> x, Term term) {
+  double total = 0.0;
+  for (std::size_t first = 0; first < x.size(); first += 4096) {
+    const std::span<const double> block = x.subspan(first, std::min<std::size_t>(4096, x.size() - first));
+    double part[8] = {};
+    std::size_t k = 0;
+    for (; k + 8 <= block.size(); k += 8) {
+      for (std::size_t i = 0; i < 8; ++i) part[i] += term(block[k + i]);
+    }
+    for (; k < block.size(); ++k) part[0] += term(block[k]);
+    total += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+  }
+  return total;
+}
+
+// 0 x is 0 unless x is NaN or Inf.
+bool all_finite(std::span<const double> x) {
+  return blocked_sum(x, [](double v) { return 0.0 * v; }) == 0.0;
+}
+
 void check_samples(const ConditioningChain& chain, std::span<const std::span<double>> channels,
                    std::span<const std::string> names, const std::string& trial) {
   std::vector<data::Diagnostic> list;
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    double zero = 0.0;  // stays 0 unless a sample is NaN or Inf
-    for (const double x : channels[c]) zero += 0.0 * x;
-    if (zero == 0.0) continue;
+    if (all_finite(channels[c])) continue;
     const auto bad = [](double x) { return !std::isfinite(x); };
     const auto first = std::find_if(channels[c].begin(), channels[c].end(), bad);
     const auto count = std::count_if(channels[c].begin(), channels[c].end(), bad);
@@ -30,17 +51,11 @@ void check_samples(const ConditioningChain& chain, std::span<const std::span<dou
   if (!list.empty()) throw data::InputError(std::move(list));
 }
 
-// Mean without the edges, in blocks, so that the rounding error does not grow with the length.
+// Mean without the edges.
 double offset_of(std::span<const double> x, const ConditioningChain& chain) {
   const std::size_t edge = std::min(static_cast<std::size_t>(chain.options.offset_edge_s * chain.rate_hz), x.size() / 4);
   const std::span<const double> inner = x.subspan(edge, x.size() - 2 * edge);
-  double total = 0.0;
-  for (std::size_t first = 0; first < inner.size(); first += 1024) {
-    double block = 0.0;
-    for (const double v : inner.subspan(first, std::min<std::size_t>(1024, inner.size() - first))) block += v;
-    total += block;
-  }
-  return total / static_cast<double>(inner.size());
+  return blocked_sum(inner, [](double v) { return v; }) / static_cast<double>(inner.size());
 }
 
 void apply(const DesignedFilter& filter, std::span<const std::span<double>> channels, const Preparation& preparation) {
@@ -116,8 +131,10 @@ OutputLayout condition(const ConditioningChain& chain, std::span<const std::span
   if (steps) steps->envelope = window_of(*steps, channels);
 
   for (const std::span<double>& channel : channels) {
-    std::copy(channel.begin() + static_cast<std::ptrdiff_t>(layout.first),
-              channel.begin() + static_cast<std::ptrdiff_t>(layout.first + layout.kept), channel.begin());
+    if (layout.first > 0) {
+      std::copy(channel.begin() + static_cast<std::ptrdiff_t>(layout.first),
+                channel.begin() + static_cast<std::ptrdiff_t>(layout.first + layout.kept), channel.begin());
+    }
     resample_in_place(channel.first(layout.kept), chain.rate_hz / chain.output_rate_hz, layout.count);
   }
   if (offsets) *offsets = std::move(offset);

@@ -43,7 +43,7 @@ void resample_in_place(std::span<double> samples, double ratio, std::size_t outp
   const double whole = std::round(ratio);
   if (std::abs(ratio - whole) <= 1e-9 * ratio) {
     const auto step = static_cast<std::size_t>(whole);
-    for (std::size_t k = 0; k < output_count; ++k) samples[k] = samples[k * step];
+    for (std::size_t k = 1; k < output_count && step > 1; ++k) samples[k] = samples[k * step];
     return;
   }
   // Not literally in place: an output may lie on input that its successors still need. The output is the shorter one.
