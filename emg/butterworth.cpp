@@ -180,11 +180,11 @@ std::string list_of(std::span<const double> frequencies) {
   return text;
 }
 
-// Frequencies between which the gain may cross 1/sqrt(2): a fine logarithmic grid and every notch's neighbourhood.
+// Frequencies between which the gain may cross 1/sqrt(2): a logarithmic grid of 2 % steps and every notch's neighbourhood.
 std::vector<double> scan_grid(std::span<const DesignedFilter> cascade) {
   std::vector<double> grid;
   const double nyquist = 0.5 * cascade.front().rate_hz;
-  for (int i = 0; i <= 6000; ++i) grid.push_back(nyquist * (1.0 - 1e-9) * std::pow(1e-7, 1.0 - i / 6000.0));
+  for (int i = 0; i <= 800; ++i) grid.push_back(nyquist * (1.0 - 1e-9) * std::pow(1e-7, 1.0 - i / 800.0));
   for (const DesignedFilter& filter : cascade) {
     if (filter.spec.kind != FilterKind::notch) continue;
     for (int k = 1; k <= filter.spec.harmonics; ++k) {
@@ -340,6 +340,7 @@ FilterReport describe(std::span<const DesignedFilter> cascade) {
     report.description = "none";
     return report;
   }
+  if (cascade.size() == 1) return describe(cascade.front());
   for (const DesignedFilter& filter : cascade) {
     const FilterReport one = describe(filter);
     report.description += (report.description.empty() ? "" : "; ") + one.description;
