@@ -5,6 +5,8 @@
 #include <bitset>
 #include <cmath>
 #include <span>
+#include <type_traits>
+#include <variant>
 
 #include "hill/element.hpp"
 #include "hill/forward.hpp"
@@ -34,6 +36,20 @@ struct ChainInput {
 void rigid_chain(const ChainInput& in);
 void elastic_chain(const ChainInput& in);
 void ceinms_chain(const ChainInput& in);
+
+/// Calls run(set) with the curves in the form that is fastest to read in one run.
+template <class Run>
+void with_curves(const CurveSet& curves, const Run& run) {
+  std::visit(
+      [&run]<class Set>(const Set& set) {
+        if constexpr (std::is_same_v<Set, Lloyd2003>) {
+          run(Lloyd2003::Reader(set));
+        } else {
+          run(set);
+        }
+      },
+      curves.variant());
+}
 
 /// Writes one frame of fibre quantities.
 inline void record(MuscleTrace& out, std::size_t k, const Projected& q, double fibre_velocity, double damping) {

@@ -223,7 +223,7 @@ class Chain {
 }  // namespace
 
 void elastic_chain(const ChainInput& in) {
-  std::visit([&in]<class Set>(const Set& set) { Chain<Set>(in, set).run(); }, in.muscle.options().curves.variant());
+  with_curves(in.muscle.options().curves, [&in]<class Set>(const Set& set) { Chain<Set>(in, set).run(); });
 }
 
 }  // namespace brachium::hill

@@ -8,6 +8,8 @@
 ///   spline    the twice continuously differentiable spline that CEINMS uses (data::PiecewiseCubic::forsythe); it
 ///             overshoots: f_l < 0 beside its feet, f_t < 0 below slack length
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "hill/compiled_cubic.hpp"
@@ -50,6 +52,23 @@ class Lloyd2003 {
   CurveDomains domains() const {
     return {active_.domain(), passive_.domain(), velocity_.domain(), tendon_.domain()};
   }
+
+  /// The same curves for one run over smooth arguments: remembers the last piece of each. Not shared by threads.
+  class Reader {
+   public:
+    explicit Reader(const Lloyd2003& set) : set_(set) {}
+    data::CurveValue active(double x) const { return set_.active_.at(x, hint_[0]); }
+    data::CurveValue passive(double x) const { return set_.passive_.at(x, hint_[1]); }
+    VelocityValue velocity(double v, double) const {
+      const data::CurveValue f = set_.velocity_.at(v, hint_[2]);
+      return {f.value, f.slope, 0.0};
+    }
+    data::CurveValue tendon(double strain) const { return set_.tendon_.at(strain, hint_[3]); }
+
+   private:
+    const Lloyd2003& set_;
+    mutable std::array<std::uint32_t, 4> hint_{};
+  };
 
  private:
   Interpolant interpolant_;

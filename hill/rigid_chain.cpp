@@ -82,8 +82,8 @@ void run(const ChainInput& in, const Set& set) {
 }  // namespace
 
 void rigid_chain(const ChainInput& in) {
-  std::visit([&in](const auto& set) { in.tangents.empty() ? run<false>(in, set) : run<true>(in, set); },
-             in.muscle.options().curves.variant());
+  with_curves(in.muscle.options().curves,
+              [&in](const auto& set) { in.tangents.empty() ? run<false>(in, set) : run<true>(in, set); });
 }
 
 }  // namespace brachium::hill
