@@ -1,11 +1,14 @@
 /// The conventions of CEINMS 2015 (offline), for comparison and for subjects calibrated there:
-///   - fibre velocity: knot slope of one cubic spline through the trial's fibre lengths, both kinds of tendon;
+///   - fibre velocity: knot slope of one cubic spline through the trial's fibre lengths, both kinds of
+///   tendon;
 ///   - v~ is cut to [-1, 1] (the unit's curves are flat beyond);
-///   - elastic root: the fibre's rate is the backward difference of third order of the last four fibre lengths
-///     (lower orders in the first frames, 0 in the very first), and the tendon curve is used as it is, also below
-///     slack length;
+///   - elastic root: the fibre's rate is the backward difference of third order of the last four fibre
+///   lengths
+///     (lower orders in the first frames, 0 in the very first), and the tendon curve is used as it is, also
+///     below slack length;
 ///   - the force is that of the fibres with the knot slope, not that of the tendon: the two differ.
-/// Not taken over: the fallback to a rigid tendon, and the mirrored fibre of a slack path, which is a status here.
+/// Not taken over: the fallback to a rigid tendon, and the mirrored fibre of a slack path, which is a status
+/// here.
 ///
 ///   F = S c N(l, v~, a),  c = √(1 - h²/l²)
 #include <fmt/format.h>
@@ -103,10 +106,14 @@ class Chain {
   double N_by(const FibreForce& f, double v, double vn, MuscleParameter p) const {
     const double N_v = is_cut(v) ? 0.0 : f.N_v;
     switch (p) {
-      case MuscleParameter::optimal_fibre_length: return f.N_lo(c_.lo) - N_v * vn / c_.lo;
-      case MuscleParameter::max_contraction_velocity: return -N_v * vn / c_.vmax;
-      case MuscleParameter::fibre_damping: return vn;
-      default: return 0.0;
+      case MuscleParameter::optimal_fibre_length:
+        return f.N_lo(c_.lo) - N_v * vn / c_.lo;
+      case MuscleParameter::max_contraction_velocity:
+        return -N_v * vn / c_.vmax;
+      case MuscleParameter::fibre_damping:
+        return vn;
+      default:
+        return 0.0;
     }
   }
 
@@ -134,7 +141,8 @@ class Chain {
     lin.R_v[k] = lin.R_a[k] = 0.0;
     for (const MuscleParameter p : kAllParameters) {
       double* R = lin.R[index_of(p)];
-      if (R != nullptr) R[k] = (c_.h * h_by(p) - z * (p == MuscleParameter::tendon_slack_length ? 1.0 : 0.0)) / l[k];
+      if (R != nullptr)
+        R[k] = (c_.h * h_by(p) - z * (p == MuscleParameter::tendon_slack_length ? 1.0 : 0.0)) / l[k];
     }
   }
 
@@ -164,15 +172,16 @@ class Chain {
     return 3.0 * (l[k - 1] - l[k - 2]) + l[k - 3];
   }
 
-  // CEINMS looks between 0.2 and 2 optimal lengths with Brent's method to 1e-6 m; we solve to rounding, and take
-  // a path without a sign change there as slack (too short) or as a failure (too long).
+  // CEINMS looks between 0.2 and 2 optimal lengths with Brent's method to 1e-6 m; we solve to rounding, and
+  // take a path without a sign change there as slack (too short) or as a failure (too long).
   void elastic_length(std::size_t k, double* l, const Linear& lin) const {
     const double L = in_.L[k], a = in_.a[k];
     const double alpha = difference_.alpha(k), beta = difference_.beta(k, l);
     const auto at = [&](double x) { return residual(L, a, alpha, beta, x); };
     double lower = std::max(0.2 * c_.lo, c_.h * (1.0 + 1e-9)), upper = 2.0 * c_.lo;
     if (!(L - c_.ls > c_.z_min) || !(at(lower).R > 0.0)) return slack_length(k, l, lin);
-    if (!(at(upper).R < 0.0)) fail(k, "no equilibrium below twice the optimal fibre length: the path is too long", 0);
+    if (!(at(upper).R < 0.0))
+      fail(k, "no equilibrium below twice the optimal fibre length: the path is too long", 0);
     double x = std::clamp(guess(k, l), lower, upper);
     for (int i = 0; i < 200; ++i) {
       const Residual r = at(x);
@@ -235,7 +244,8 @@ class Chain {
     for (const MuscleParameter p : kAllParameters) {
       double* F = lin.F[index_of(p)];
       if (F == nullptr) continue;
-      F[k] = c_.S * (g.c_h * h_by(p) * f.N + g.c * N_by(f, v, q.vn, p)) + relative_dS(in_.muscle, p) * in_.out.force_N[k];
+      F[k] = c_.S * (g.c_h * h_by(p) * f.N + g.c * N_by(f, v, q.vn, p)) +
+             relative_dS(in_.muscle, p) * in_.out.force_N[k];
     }
   }
 
@@ -261,7 +271,8 @@ class Chain {
 
   [[noreturn]] void fail(std::size_t k, const char* reason, int iterations) const {
     data::ConvergenceFailure::Details d;
-    d.where = fmt::format("muscle `{}`, frame {} (t = {:.6g} s)", in_.muscle.name(), k, static_cast<double>(k) * in_.step_s);
+    d.where = fmt::format("muscle `{}`, frame {} (t = {:.6g} s)", in_.muscle.name(), k,
+                          static_cast<double>(k) * in_.step_s);
     d.reason = reason;
     d.iterations = iterations;
     d.worst = in_.muscle.name();

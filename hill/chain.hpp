@@ -52,7 +52,8 @@ void with_curves(const CurveSet& curves, const Run& run) {
 }
 
 /// Writes one frame of fibre quantities.
-inline void record(MuscleTrace& out, std::size_t k, const Projected& q, double fibre_velocity, double damping) {
+inline void record(MuscleTrace& out, std::size_t k, const Projected& q, double fibre_velocity,
+                   double damping) {
   out.fibre_length_m[k] = q.l;
   out.fibre_velocity_m_s[k] = fibre_velocity;
   if (!out.parts) return;
@@ -78,14 +79,18 @@ inline void record_slack(MuscleTrace& out, std::size_t k, const ElementConstants
 
 /// dS/dparameter / S for the two factors of S, else 0.
 inline double relative_dS(const MuscleTendon& muscle, MuscleParameter parameter) {
-  if (parameter == MuscleParameter::max_isometric_force) return 1.0 / muscle.parameters().max_isometric_force_N;
+  if (parameter == MuscleParameter::max_isometric_force)
+    return 1.0 / muscle.parameters().max_isometric_force_N;
   if (parameter == MuscleParameter::strength) return 1.0 / muscle.parameters().strength;
   return 0.0;
 }
 
-inline constexpr MuscleParameter kAllParameters[kParameterCount] = {
-    MuscleParameter::max_isometric_force,      MuscleParameter::strength,      MuscleParameter::optimal_fibre_length,
-    MuscleParameter::tendon_slack_length,      MuscleParameter::pennation,     MuscleParameter::max_contraction_velocity,
-    MuscleParameter::fibre_damping};
+inline constexpr MuscleParameter kAllParameters[kParameterCount] = {MuscleParameter::max_isometric_force,
+                                                                    MuscleParameter::strength,
+                                                                    MuscleParameter::optimal_fibre_length,
+                                                                    MuscleParameter::tendon_slack_length,
+                                                                    MuscleParameter::pennation,
+                                                                    MuscleParameter::max_contraction_velocity,
+                                                                    MuscleParameter::fibre_damping};
 
 }  // namespace brachium::hill

@@ -1,8 +1,10 @@
 #pragma once
-/// A data::PiecewiseCubic laid out for inner loops: the same numbers to the last bit, without the binary search.
+/// A data::PiecewiseCubic laid out for inner loops: the same numbers to the last bit, without the binary
+/// search.
 ///
-/// A uniform grid over a window that holds the knots maps an argument to the first piece it can lie in; from there
-/// at most a few knots are stepped over. The tails beyond the first and the last knot are pieces like the others.
+/// A uniform grid over a window that holds the knots maps an argument to the first piece it can lie in; from
+/// there at most a few knots are stepped over. The tails beyond the first and the last knot are pieces like
+/// the others.
 
 #include <algorithm>
 #include <cstddef>
@@ -21,8 +23,8 @@ class CompiledCubic {
 
   data::CurveValue operator()(double x) const { return find(x)->evaluate(x); }
 
-  /// The same, trying the piece of the call before first: in a smooth sequence of arguments the processor predicts
-  /// that branch and need not wait for the look-up. `hint` starts at 0 and belongs to one curve.
+  /// The same, trying the piece of the call before first: in a smooth sequence of arguments the processor
+  /// predicts that branch and need not wait for the look-up. `hint` starts at 0 and belongs to one curve.
   data::CurveValue at(double x, std::uint32_t& hint) const {
     const Piece* p = pieces_.data() + hint;
     if (!(x >= p[0].start && x < p[1].start)) {
@@ -54,8 +56,8 @@ class CompiledCubic {
     return p;
   }
 
-  std::vector<Piece> pieces_;          // the last one only marks the end, at infinity
-  std::vector<std::uint16_t> first_;   // per cell, and one for everything above the window
+  std::vector<Piece> pieces_;         // the last one only marks the end, at infinity
+  std::vector<std::uint16_t> first_;  // per cell, and one for everything above the window
   double lower_ = 0.0, cells_per_unit_ = 0.0;
   data::Domain domain_{0.0, 0.0};
 };

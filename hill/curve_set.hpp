@@ -1,5 +1,6 @@
 #pragma once
-/// A named set of the four normalised curves of a Hill-type muscle. One question asked of five published sets.
+/// A named set of the four normalised curves of a Hill-type muscle. One question asked of five published
+/// sets.
 ///
 /// | symbol | identifier | unit          | meaning                                                        |
 /// |--------|------------|---------------|----------------------------------------------------------------|
@@ -28,15 +29,15 @@
 
 namespace brachium::hill {
 
-/// Any of the published sets, with the parameters it was built with. A value type; safe to share between threads.
+/// Any of the published sets, with the parameters it was built with. A value type; safe to share between
+/// threads.
 class CurveSet {
  public:
   using Variant = std::variant<DeGrooteFregly2016, Thelen2003, Millard2012, Lloyd2003, Guenther2007>;
 
   CurveSet() : CurveSet(Lloyd2003()) {}  ///< Lloyd & Besier 2003, monotone interpolant
   template <class Set>
-    requires std::is_constructible_v<Variant, Set>
-  CurveSet(Set set) : set_(std::move(set)) {}
+  requires std::is_constructible_v<Variant, Set> CurveSet(Set set) : set_(std::move(set)) {}
 
   /// "degroote_fregly_2016", "thelen_2003", "millard_2012", "lloyd_2003", "lloyd_2003_spline" or
   /// "guenther_2007"; throws InputError("unknown-curve-set") with the nearest name otherwise.

@@ -4,9 +4,9 @@
 ///
 ///   f_l(x) = Σᵢ b₁ᵢ exp(-½ (x - b₂ᵢ)² / (b₃ᵢ + b₄ᵢ x)²)
 ///            erratum: the supplement prints the denominator without its square
-///   f_p(x) = (exp(k_P (x - 1)/e₀) - exp(k_P (x_min - 1)/e₀)) / (exp(k_P) - exp(k_P (x_min - 1)/e₀)), x_min = 0.2
-///   f_v(v) = d₁ ln((d₂ v + d₃) + √((d₂ v + d₃)² + 1)) + d₄
-///   f_t(e) = c₁ exp(k_T (1 + e - c₂)) - c₃, k_T = ln((1 + c₃)/c₁)/e₁
+///   f_p(x) = (exp(k_P (x - 1)/e₀) - exp(k_P (x_min - 1)/e₀)) / (exp(k_P) - exp(k_P (x_min - 1)/e₀)), x_min =
+///   0.2 f_v(v) = d₁ ln((d₂ v + d₃) + √((d₂ v + d₃)² + 1)) + d₄ f_t(e) = c₁ exp(k_T (1 + e - c₂)) - c₃, k_T =
+///   ln((1 + c₃)/c₁)/e₁
 ///
 /// | symbol | identifier   | unit | meaning                                   |
 /// |--------|--------------|------|-------------------------------------------|
@@ -25,9 +25,9 @@ class DeGrooteFregly2016 {
   static constexpr const char* kName = "degroote_fregly_2016";
 
   struct Parameters {
-    double passive_strain_at_one_force = 0.6;    ///< > 0
-    double passive_stiffness = 4.0;              ///< > 0
-    double tendon_strain_at_one_force = 0.049;   ///< > 0
+    double passive_strain_at_one_force = 0.6;   ///< > 0
+    double passive_stiffness = 4.0;             ///< > 0
+    double tendon_strain_at_one_force = 0.049;  ///< > 0
   };
 
   DeGrooteFregly2016() : DeGrooteFregly2016(Parameters()) {}
@@ -71,9 +71,10 @@ class DeGrooteFregly2016 {
   struct Gauss {
     double b1, b2, b3, b4;
   };
-  static constexpr Gauss kGauss[3] = {{0.8150671134243542, 1.055033428970575, 0.162384573599574, 0.063303448465465},
-                                      {0.433004984392647, 0.716775413397760, -0.029947116970696, 0.200356847296188},
-                                      {0.1, 1.0, 0.353553390593274, 0.0}};
+  static constexpr Gauss kGauss[3] = {
+      {0.8150671134243542, 1.055033428970575, 0.162384573599574, 0.063303448465465},
+      {0.433004984392647, 0.716775413397760, -0.029947116970696, 0.200356847296188},
+      {0.1, 1.0, 0.353553390593274, 0.0}};
   static constexpr double kD1 = -0.3211346127989808, kD2 = -8.149, kD3 = -0.374, kD4 = 0.8825327733249912;
   static constexpr double kC1 = 0.2, kC2 = 1.0, kC3 = 0.2;
   static constexpr double kMinimumFibre = 0.2;

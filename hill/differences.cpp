@@ -45,7 +45,8 @@ void SplineSlopes::apply(std::span<const double> y, std::span<double> out) {
   assert(y.size() == n && out.size() == n);
   const double h = step_, r = 1.0 / step_;
   std::vector<double>& c = c_;
-  // Right-hand side: second differences inside; at the ends the third derivative of the cubic through four points.
+  // Right-hand side: second differences inside; at the ends the third derivative of the cubic through four
+  // points.
   for (std::size_t i = 1; i + 1 < n; ++i) c[i] = (y[i + 1] - y[i]) * r - (y[i] - y[i - 1]) * r;
   c[0] = (c[2] - c[1]) / 6.0;
   c[n - 1] = -(c[n - 2] - c[n - 3]) / 6.0;

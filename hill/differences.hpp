@@ -11,8 +11,8 @@ namespace brachium::hill {
 /// Fewest frames that central_differences() needs.
 inline constexpr std::size_t kCentralFrames = 5;
 
-/// Five-point differences of fourth order, exact for quartics: symmetric (no phase lag) but at the two frames next
-/// to either end, where the same five points are used one-sidedly.
+/// Five-point differences of fourth order, exact for quartics: symmetric (no phase lag) but at the two frames
+/// next to either end, where the same five points are used one-sidedly.
 void central_differences(std::span<const double> y, double step_s, std::span<double> out);
 
 /// Backward difference of second order, (3 y_k - 4 y_{k-1} + y_{k-2})/(2 h); of first order at frame 1.

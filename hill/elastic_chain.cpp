@@ -2,7 +2,8 @@
 ///   R_k = f_t((L_k - z_k)/l_s - 1) - Q(z_k, w_k, a_k) = 0,  F_k = S f_t
 ///   none      w = 0
 ///   causal    w_k = (D z)_k, D the backward difference of second order, inside the root
-///   zero_lag  a first sweep as causal gives z¹; a second one solves with w_k = (D z)_k + ((C - D) z¹)_k, C the
+///   zero_lag  a first sweep as causal gives z¹; a second one solves with w_k = (D z)_k + ((C - D) z¹)_k, C
+///   the
 ///             central difference of fourth order: one step of deferred correction (Pereyra 1966,
 ///             doi:10.1007/BF02162981), whose fixed point is the symmetric scheme
 /// The first frame takes w_0 = L'_0: the tendon's length is at rest there.
@@ -18,12 +19,20 @@
 namespace brachium::hill {
 namespace {
 
-enum Slot : std::size_t { kFirst = 0, kSecond, kShift, kFirstTangent, kSecondTangent, kShiftTangent, kLinear };
+enum Slot : std::size_t {
+  kFirst = 0,
+  kSecond,
+  kShift,
+  kFirstTangent,
+  kSecondTangent,
+  kShiftTangent,
+  kLinear
+};
 
 // Per frame, what the tangents need of one sweep.
 struct Linear {
   double *inverse, *Q_w, *Q_a, *stiffness, *taut_a;
-  std::array<double*, kParameterCount> R;   // R_theta, null where not wanted
+  std::array<double*, kParameterCount> R;  // R_theta, null where not wanted
   static constexpr std::size_t kArrays = 5 + kParameterCount;
 
   Linear(MuscleScratch& scratch, std::size_t base, std::size_t n, std::bitset<kParameterCount> wanted)
@@ -49,7 +58,8 @@ void linearise_without_root(const Linear& lin, std::size_t k, Equilibrium::Kind 
   lin.Q_w[k] = lin.Q_a[k] = lin.stiffness[k] = 0.0;
   lin.taut_a[k] = taut_a;
   for (const MuscleParameter p : kAllParameters) lin.set(p, k, 0.0);
-  if (kind == Equilibrium::Kind::slack) lin.set(MuscleParameter::optimal_fibre_length, k, kShortestProjection);
+  if (kind == Equilibrium::Kind::slack)
+    lin.set(MuscleParameter::optimal_fibre_length, k, kShortestProjection);
   if (kind == Equilibrium::Kind::untaut) lin.set(MuscleParameter::tendon_slack_length, k, -1.0);
 }
 
@@ -57,7 +67,12 @@ template <class Set>
 class Chain {
  public:
   Chain(const ChainInput& in, const Set& set)
-      : in_(in), set_(set), c_(in.muscle), solver_(set_, c_), difference_{in.step_s}, start_rate_(start_rate(in)) {}
+      : in_(in),
+        set_(set),
+        c_(in.muscle),
+        solver_(set_, c_),
+        difference_{in.step_s},
+        start_rate_(start_rate(in)) {}
 
   void run() {
     const bool corrected = in_.muscle.options().velocity == FibreVelocity::zero_lag;
@@ -140,8 +155,8 @@ class Chain {
     }
   }
 
-  void linearise(const Linear& lin, std::size_t k, const EquilibriumProblem& p, const Equilibrium& e, const Projected& q,
-                 double w) const {
+  void linearise(const Linear& lin, std::size_t k, const EquilibriumProblem& p, const Equilibrium& e,
+                 const Projected& q, double w) const {
     if (e.kind == Equilibrium::Kind::untaut) {
       // Nothing pushes: as the activation rises from zero, so does the force, F = S Q to first order.
       linearise_without_root(lin, k, e.kind, q.Q < 0.0 ? 0.0 : q.Q_a);
@@ -156,8 +171,9 @@ class Chain {
     lin.taut_a[k] = 0.0;
     for (const MuscleParameter parameter : kAllParameters) {
       if (lin.R[index_of(parameter)] == nullptr) continue;
-      lin.set(parameter, k, parameter == MuscleParameter::tendon_slack_length ? tendon_by_slack(p.L, e.z, stiffness)
-                                                                              : -dQ(q, c_, w, parameter));
+      lin.set(parameter, k,
+              parameter == MuscleParameter::tendon_slack_length ? tendon_by_slack(p.L, e.z, stiffness)
+                                                                : -dQ(q, c_, w, parameter));
     }
   }
 
@@ -205,7 +221,8 @@ class Chain {
 
   [[noreturn]] void fail(std::size_t k, const Equilibrium& e) const {
     data::ConvergenceFailure::Details d;
-    d.where = fmt::format("muscle `{}`, frame {} (t = {:.6g} s)", in_.muscle.name(), k, static_cast<double>(k) * in_.step_s);
+    d.where = fmt::format("muscle `{}`, frame {} (t = {:.6g} s)", in_.muscle.name(), k,
+                          static_cast<double>(k) * in_.step_s);
     d.reason = "the elastic equilibrium was not bracketed tightly enough";
     d.iterations = e.evaluations;
     d.worst = in_.muscle.name();

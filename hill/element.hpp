@@ -23,7 +23,9 @@
 namespace brachium::hill {
 
 inline constexpr std::size_t kParameterCount = 7;
-inline std::size_t index_of(MuscleParameter p) { return static_cast<std::size_t>(p); }
+inline std::size_t index_of(MuscleParameter p) {
+  return static_cast<std::size_t>(p);
+}
 
 /// Shortest projection of the fibres on the tendon that is taken as physical, in optimal fibre lengths.
 inline constexpr double kShortestProjection = 0.01;
@@ -134,10 +136,14 @@ inline double dQ(const Projected& q, const ElementConstants& k, double w, Muscle
   switch (parameter) {
     case MuscleParameter::optimal_fibre_length:
       return Q_h * k.sin_opt + q.c * (f.N_lo(k.lo) - N_v * q.vn / k.lo);
-    case MuscleParameter::pennation: return Q_h * k.lo * k.cos_opt;
-    case MuscleParameter::max_contraction_velocity: return -q.c * N_v * q.vn / k.vmax;
-    case MuscleParameter::fibre_damping: return q.c * q.vn;
-    default: return 0.0;
+    case MuscleParameter::pennation:
+      return Q_h * k.lo * k.cos_opt;
+    case MuscleParameter::max_contraction_velocity:
+      return -q.c * N_v * q.vn / k.vmax;
+    case MuscleParameter::fibre_damping:
+      return q.c * q.vn;
+    default:
+      return 0.0;
   }
 }
 

@@ -3,10 +3,10 @@
 ///
 ///   R(z) = f_t((L - z)/l_s - 1) - Q(z, α z + β, a)
 ///
-/// The fibre's rate is linear in the unknown, w = α z + β: α = 0 for a given rate, else a backward difference.
-/// Guaranteed bracket: R > 0 at the shortest fibre unless the path is slack, and R <= 0 at
-/// max(L - l_s, -β/α): there the tendon carries nothing (a tendon cannot push: f_t = 0 below slack length) and
-/// the fibre does not shorten, so that Q >= 0. With α = 0 and fast shortening the fibres may push even there;
+/// The fibre's rate is linear in the unknown, w = α z + β: α = 0 for a given rate, else a backward
+/// difference. Guaranteed bracket: R > 0 at the shortest fibre unless the path is slack, and R <= 0 at max(L
+/// - l_s, -β/α): there the tendon carries nothing (a tendon cannot push: f_t = 0 below slack length) and the
+/// fibre does not shorten, so that Q >= 0. With α = 0 and fast shortening the fibres may push even there;
 /// then nothing is carried. Newton's method, safeguarded by bisection of the bracket.
 
 #include <algorithm>
@@ -24,16 +24,16 @@ inline data::CurveValue taut_tendon(const Set& set, double strain) {
 
 struct Equilibrium {
   enum class Kind {
-    root,        ///< R(z) = 0
-    untaut,      ///< z = L - l_s, nothing is carried
-    slack,       ///< no fibre is short enough: z = z_min
+    root,    ///< R(z) = 0
+    untaut,  ///< z = L - l_s, nothing is carried
+    slack,   ///< no fibre is short enough: z = z_min
     unconverged
   };
   Kind kind = Kind::root;
   double z = 0.0;
-  double tendon = 0.0;        ///< f_t
-  Projected fibres{};     ///< at the last iterate but `step`
-  double step = 0.0;      ///< z - last iterate, below the tolerance
+  double tendon = 0.0;  ///< f_t
+  Projected fibres{};   ///< at the last iterate but `step`
+  double step = 0.0;    ///< z - last iterate, below the tolerance
   int evaluations = 0;
 };
 
@@ -63,8 +63,10 @@ class EquilibriumSolver {
       const double slope = t.slope * k_.per_ls + q.Q_z + p.alpha * q.Q_w;  // -dR/dz
       (residual > 0.0 ? lower : upper) = z;
       const double step = residual / slope;
-      if (slope > 0.0 && std::abs(step) <= kStepTolerance * k_.lo && std::abs(residual) <= kResidualTolerance) {
-        // What remains is of the order of step squared, below rounding: f_t and l follow by one term of Taylor's series.
+      if (slope > 0.0 && std::abs(step) <= kStepTolerance * k_.lo &&
+          std::abs(residual) <= kResidualTolerance) {
+        // What remains is of the order of step squared, below rounding: f_t and l follow by one term of
+        // Taylor's series.
         e.z = z + step;
         e.tendon = t.value - t.slope * k_.per_ls * step;
         e.step = step;
@@ -100,8 +102,9 @@ class EquilibriumSolver {
 
  private:
   static constexpr int kMaxEvaluations = 200;
-  static constexpr double kStepTolerance = 1e-8;      // in optimal fibre lengths
-  static constexpr double kResidualTolerance = 1e-4;  // in F0; a small step from a large residual is no convergence
+  static constexpr double kStepTolerance = 1e-8;  // in optimal fibre lengths
+  static constexpr double kResidualTolerance =
+      1e-4;  // in F0; a small step from a large residual is no convergence
 
   Equilibrium slack() const {
     Equilibrium e;

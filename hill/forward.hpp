@@ -26,17 +26,17 @@ namespace brachium::hill {
 
 /// One muscle's path over a trial of n equally spaced frames.
 struct PathTrace {
-  double rate_hz = 0.0;                   ///< > 0
-  std::span<const double> length_m;       ///< n
-  std::span<const double> velocity_m_s;   ///< n, or empty: then the rigid tendon differentiates length_m
-  std::span<const double> moment_arm_m;   ///< n, or empty: then no moment is given
+  double rate_hz = 0.0;                  ///< > 0
+  std::span<const double> length_m;      ///< n
+  std::span<const double> velocity_m_s;  ///< n, or empty: then the rigid tendon differentiates length_m
+  std::span<const double> moment_arm_m;  ///< n, or empty: then no moment is given
 };
 
 /// What became of a frame.
 enum class FrameStatus : std::uint8_t {
   ok,
-  unloaded,   ///< the fibres would push, or carry nothing: the tendon is not taut, force 0
-  slack       ///< the path is too short for the slack tendon and the shortest fibre: force 0
+  unloaded,  ///< the fibres would push, or carry nothing: the tendon is not taut, force 0
+  slack      ///< the path is too short for the slack tendon and the shortest fibre: force 0
 };
 std::string to_string(FrameStatus status);
 
@@ -45,7 +45,7 @@ struct MuscleTrace {
   std::vector<double> force_N;
   std::vector<double> moment_N_m;
   std::vector<double> fibre_length_m;
-  std::vector<double> fibre_velocity_m_s;   ///< lengthening positive
+  std::vector<double> fibre_velocity_m_s;  ///< lengthening positive
   std::vector<FrameStatus> status;
   /// Parts for the report, in units of F0 strength along the fibre; filled only if `parts` is set.
   bool parts = false;
@@ -68,7 +68,8 @@ enum class MuscleParameter {
   max_contraction_velocity,
   fibre_damping
 };
-/// Key of the parameter with its unit ("tendon_slack_length_m"), and back; throws InputError("unknown-parameter").
+/// Key of the parameter with its unit ("tendon_slack_length_m"), and back; throws
+/// InputError("unknown-parameter").
 std::string to_string(MuscleParameter parameter);
 MuscleParameter parse_muscle_parameter(std::string_view name);
 double get(const data::MuscleParameters& parameters, MuscleParameter which);
@@ -76,9 +77,9 @@ void set(data::MuscleParameters& parameters, MuscleParameter which, double value
 
 /// One direction theta: dF/dtheta = dF/da da/dtheta + dF/dparameter.
 struct Tangent {
-  std::span<const double> dactivation;        ///< n [1/theta], or empty: the activation does not depend on theta
-  std::optional<MuscleParameter> parameter;   ///< set: theta is this parameter
-  std::span<double> dforce;                   ///< n, output [N/theta]
+  std::span<const double> dactivation;  ///< n [1/theta], or empty: the activation does not depend on theta
+  std::optional<MuscleParameter> parameter;  ///< set: theta is this parameter
+  std::span<double> dforce;                  ///< n, output [N/theta]
 };
 
 /// Working memory; reuse it over calls. Not to be shared between threads.

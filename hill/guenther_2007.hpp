@@ -1,11 +1,11 @@
 #pragma once
-/// Bell-shaped active force-length curve of Günther, Schmitt & Wank 2007, doi:10.1007/s00422-007-0160-6, the law
-/// that continuum models use as well, so that a lumped and a continuum muscle can share one active law.
+/// Bell-shaped active force-length curve of Günther, Schmitt & Wank 2007, doi:10.1007/s00422-007-0160-6, the
+/// law that continuum models use as well, so that a lumped and a continuum muscle can share one active law.
 ///
 ///   f_l(x) = exp(-|(x - 1)/ΔW|^ν),  ΔW, ν = ΔW_asc, ν_asc for x <= 1 and ΔW_des, ν_des for x > 1
 ///
-/// The source's other elements have parameters of their own kind; passive force, force-velocity and tendon curve
-/// are borrowed from De Groote & Fregly 2016 (kBorrowed).
+/// The source's other elements have parameters of their own kind; passive force, force-velocity and tendon
+/// curve are borrowed from De Groote & Fregly 2016 (kBorrowed).
 
 #include <cmath>
 
@@ -19,10 +19,10 @@ class Guenther2007 {
   static constexpr const char* kBorrowed = DeGrooteFregly2016::kName;
 
   struct Parameters {
-    double ascending_width = 0.57;      ///< ΔW_asc > 0
-    double ascending_exponent = 4.0;    ///< ν_asc > 1
-    double descending_width = 0.14;     ///< ΔW_des > 0
-    double descending_exponent = 3.0;   ///< ν_des > 1
+    double ascending_width = 0.57;     ///< ΔW_asc > 0
+    double ascending_exponent = 4.0;   ///< ν_asc > 1
+    double descending_width = 0.14;    ///< ΔW_des > 0
+    double descending_exponent = 3.0;  ///< ν_des > 1
   };
 
   Guenther2007() : Guenther2007(Parameters()) {}

@@ -42,7 +42,8 @@ Instant elastic(const Set& set, ElementConstants c, double L, double a, const st
     throw data::ConvergenceFailure(d);
   }
   const Projected q = project(set, c, e.z, 0.0, a);
-  if (e.kind == Equilibrium::Kind::untaut || e.tendon < 0.0) return {0.0, 0.0, 0.0, q.Q < 0.0 ? 0.0 : c.S * q.Q_a};
+  if (e.kind == Equilibrium::Kind::untaut || e.tendon < 0.0)
+    return {0.0, 0.0, 0.0, q.Q < 0.0 ? 0.0 : c.S * q.Q_a};
   const double k = taut_tendon(set, (L - e.z) / c.ls - 1.0).slope / c.ls;
   const double series = k / (k + q.Q_z);
   return {c.S * e.tendon, c.S * series * q.Q_z, 0.0, c.S * series * q.Q_a};
@@ -52,14 +53,16 @@ Instant instant(const MuscleTendon& muscle, double L, double rate, double a) {
   const ElementConstants c(muscle);
   return std::visit(
       [&](const auto& set) {
-        return muscle.options().tendon == TendonKind::rigid ? rigid(set, c, L, rate, a) : elastic(set, c, L, a, muscle.name());
+        return muscle.options().tendon == TendonKind::rigid ? rigid(set, c, L, rate, a)
+                                                            : elastic(set, c, L, a, muscle.name());
       },
       muscle.options().curves.variant());
 }
 
 void check_size(const char* what, Eigen::Index got, std::size_t expected) {
   if (static_cast<std::size_t>(got) == expected) return;
-  throw data::InputError("size-mismatch", fmt::format("`{}` has {} entries, the model {}", what, got, expected));
+  throw data::InputError("size-mismatch",
+                         fmt::format("`{}` has {} entries, the model {}", what, got, expected));
 }
 
 }  // namespace
@@ -68,19 +71,26 @@ JointModel::JointModel(std::string coordinate, std::vector<JointMuscle> muscles)
     : coordinates_{std::move(coordinate)}, joint_muscles_(std::move(muscles)) {
   std::vector<data::Diagnostic> mistakes;
   const auto mistake = [&mistakes](std::string code, std::string message, std::string help) {
-    mistakes.push_back({data::Severity::error, std::move(code), std::move(message), std::nullopt, std::move(help)});
+    mistakes.push_back(
+        {data::Severity::error, std::move(code), std::move(message), std::nullopt, std::move(help)});
   };
-  if (joint_muscles_.empty()) mistake("no-muscles", fmt::format("no muscle acts on `{}`", coordinates_[0]), "");
+  if (joint_muscles_.empty())
+    mistake("no-muscles", fmt::format("no muscle acts on `{}`", coordinates_[0]), "");
   for (const JointMuscle& m : joint_muscles_) {
     const std::string& name = m.muscle.name();
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
       mistake("duplicate-muscle", fmt::format("muscle `{}` is given twice", name), "");
     }
     if (m.path.coordinate() != coordinates_[0]) {
-      mistake("wrong-coordinate", fmt::format("the path of muscle `{}` depends on `{}`, the joint is `{}`", name, m.path.coordinate(), coordinates_[0]), "");
+      mistake("wrong-coordinate",
+              fmt::format("the path of muscle `{}` depends on `{}`, the joint is `{}`", name,
+                          m.path.coordinate(), coordinates_[0]),
+              "");
     }
     if (m.muscle.options().tendon != joint_muscles_[0].muscle.options().tendon) {
-      mistake("mixed-tendons", fmt::format("muscle `{}` has another kind of tendon than muscle `{}`", name, joint_muscles_[0].muscle.name()),
+      mistake("mixed-tendons",
+              fmt::format("muscle `{}` has another kind of tendon than muscle `{}`", name,
+                          joint_muscles_[0].muscle.name()),
               "all muscles of one joint model are on the same rung, rigid or elastic");
     }
     if (m.muscle.options().compatibility != Compatibility::none) {
@@ -99,15 +109,17 @@ JointModel::JointModel(std::string coordinate, std::vector<JointMuscle> muscles)
 
 // L' = -r q', so that with r' = dr/dq:
 //   dF/dq = -r F_L - r' q' F_rate,  dM/dq = sum r' F + r dF/dq,  dM/da = r F_a
-void JointModel::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::VectorXd& activation,
-                          const Eigen::VectorXd& state, limb::Evaluation& out) const {
+void JointModel::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
+                          const Eigen::VectorXd& activation, const Eigen::VectorXd& state,
+                          limb::Evaluation& out) const {
   const std::size_t n = joint_muscles_.size();
   check_size("q", q.size(), 1);
   if (traits_.uses_qdot || qdot.size() != 0) check_size("qdot", qdot.size(), 1);
   check_size("activation", activation.size(), n);
   check_size("state", state.size(), 0);
   const double rate = traits_.uses_qdot ? qdot[0] : 0.0;
-  if (!std::isfinite(rate)) throw data::InputError("not-finite", fmt::format("the velocity of `{}` is {}", coordinates_[0], rate));
+  if (!std::isfinite(rate))
+    throw data::InputError("not-finite", fmt::format("the velocity of `{}` is {}", coordinates_[0], rate));
   const auto m = static_cast<Eigen::Index>(n);
   out.force.resize(m);
   out.moment_arm.resize(1, m);
@@ -120,7 +132,9 @@ void JointModel::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
     const JointMuscle& joint = joint_muscles_[static_cast<std::size_t>(i)];
     const double a = activation[i];
     if (!(a >= 0.0 && a <= 1.0)) {
-      throw data::InputError("activation-range", fmt::format("the activation of muscle `{}` is {}", joint.muscle.name(), a), "it must lie in [0, 1]");
+      throw data::InputError("activation-range",
+                             fmt::format("the activation of muscle `{}` is {}", joint.muscle.name(), a),
+                             "it must lie in [0, 1]");
     }
     const limb::MusclePath::Value path = joint.path(q[0]);
     const double r = path.moment_arm_m, slope = path.dmoment_arm_dq_m;

@@ -1,11 +1,12 @@
 #pragma once
-/// Tabulated curves of Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1, with the points that CEINMS ships
-/// as its default (Pizzolato et al. 2015, doi:10.1016/j.jbiomech.2015.09.021).
+/// Tabulated curves of Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1, with the points that CEINMS
+/// ships as its default (Pizzolato et al. 2015, doi:10.1016/j.jbiomech.2015.09.021).
 ///
 /// Two interpolants by name:
 ///   monotone  (default) no overshoot between points (data::PiecewiseCubic::monotone), so that the elastic
 ///             equilibrium stays unambiguous
-///   spline    the twice continuously differentiable spline that CEINMS uses (data::PiecewiseCubic::forsythe); it
+///   spline    the twice continuously differentiable spline that CEINMS uses
+///   (data::PiecewiseCubic::forsythe); it
 ///             overshoots: f_l < 0 beside its feet, f_t < 0 below slack length
 
 #include <array>
@@ -38,7 +39,9 @@ class Lloyd2003 {
   /// Throws InputError("bad-curve").
   Lloyd2003(Interpolant interpolant, const Table& table);
 
-  const char* name() const { return interpolant_ == Interpolant::monotone ? "lloyd_2003" : "lloyd_2003_spline"; }
+  const char* name() const {
+    return interpolant_ == Interpolant::monotone ? "lloyd_2003" : "lloyd_2003_spline";
+  }
   Interpolant interpolant() const { return interpolant_; }
 
   data::CurveValue active(double x) const { return active_(x); }
@@ -53,7 +56,8 @@ class Lloyd2003 {
     return {active_.domain(), passive_.domain(), velocity_.domain(), tendon_.domain()};
   }
 
-  /// The same curves for one run over smooth arguments: remembers the last piece of each. Not shared by threads.
+  /// The same curves for one run over smooth arguments: remembers the last piece of each. Not shared by
+  /// threads.
   class Reader {
    public:
     explicit Reader(const Lloyd2003& set) : set_(set) {}

@@ -1,15 +1,15 @@
 #pragma once
-/// Bézier curves of Millard, Uchida, Seth & Delp 2013, doi:10.1115/1.4023390 (OpenSim's Millard2012EquilibriumMuscle),
-/// with its default parameters. Twice continuously differentiable; each is fixed by values and slopes a physiologist
-/// can measure.
+/// Bézier curves of Millard, Uchida, Seth & Delp 2013, doi:10.1115/1.4023390 (OpenSim's
+/// Millard2012EquilibriumMuscle), with its default parameters. Twice continuously differentiable; each is
+/// fixed by values and slopes a physiologist can measure.
 ///
-///   f_l  rises from 0.1 at x_min through a shallow slope to 1 at x = 1, and falls to 0.1 at x_max; 0.1 outside
-///   f_p  0 at 1 + e_zero, 1 at 1 + e_one, slope 0.2 behind its foot and 2.857 at the end, linear beyond
-///   f_v  0 at v = -1, 1 at 0, 1.4 at v = 1; slopes 0, 0.25 (at v = -0.9), 5, 0.15 (at v = 0.9), 0
-///   f_t  0 at e = 0, 2/3 at the end of the toe, then linear with slope 28.06 through 1 at e_one = 0.049
+///   f_l  rises from 0.1 at x_min through a shallow slope to 1 at x = 1, and falls to 0.1 at x_max; 0.1
+///   outside f_p  0 at 1 + e_zero, 1 at 1 + e_one, slope 0.2 behind its foot and 2.857 at the end, linear
+///   beyond f_v  0 at v = -1, 1 at 0, 1.4 at v = 1; slopes 0, 0.25 (at v = -0.9), 5, 0.15 (at v = 0.9), 0 f_t
+///   0 at e = 0, 2/3 at the end of the toe, then linear with slope 28.06 through 1 at e_one = 0.049
 ///
-/// The active curve does not reach zero: its floor of 0.1 keeps the source's force-velocity inversion defined. Our
-/// chain does not invert; the floor is kept so that the set is the published one.
+/// The active curve does not reach zero: its floor of 0.1 keeps the source's force-velocity inversion
+/// defined. Our chain does not invert; the floor is kept so that the set is the published one.
 
 #include "hill/curve_values.hpp"
 #include "hill/quintic_bezier.hpp"
@@ -60,7 +60,9 @@ class Millard2012 {
   }
   data::CurveValue tendon(double strain) const { return tendon_(strain); }
 
-  CurveDomains domains() const { return {active_.domain(), passive_.domain(), velocity_.domain(), tendon_.domain()}; }
+  CurveDomains domains() const {
+    return {active_.domain(), passive_.domain(), velocity_.domain(), tendon_.domain()};
+  }
 
  private:
   QuinticBezier active_, passive_, velocity_, tendon_;

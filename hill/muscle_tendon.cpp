@@ -21,8 +21,9 @@ const Names<TendonKind>& tendons() {
   return all;
 }
 const Names<FibreVelocity>& velocities() {
-  static const Names<FibreVelocity> all = {
-      {"zero_lag", FibreVelocity::zero_lag}, {"causal", FibreVelocity::causal}, {"none", FibreVelocity::none}};
+  static const Names<FibreVelocity> all = {{"zero_lag", FibreVelocity::zero_lag},
+                                           {"causal", FibreVelocity::causal},
+                                           {"none", FibreVelocity::none}};
   return all;
 }
 const Names<Compatibility>& compatibilities() {
@@ -37,7 +38,8 @@ Enum parse(const Names<Enum>& all, std::string_view name, const char* what) {
     if (key == name) return value;
     known.push_back(key);
   }
-  throw data::InputError("unknown-choice", fmt::format("`{}` is not a {}", name, what), data::suggest(name, known));
+  throw data::InputError("unknown-choice", fmt::format("`{}` is not a {}", name, what),
+                         data::suggest(name, known));
 }
 
 template <class Enum>
@@ -50,12 +52,24 @@ std::string name_of(const Names<Enum>& all, Enum value) {
 
 }  // namespace
 
-TendonKind parse_tendon(std::string_view name) { return parse(tendons(), name, "kind of tendon"); }
-FibreVelocity parse_fibre_velocity(std::string_view name) { return parse(velocities(), name, "fibre velocity"); }
-Compatibility parse_compatibility(std::string_view name) { return parse(compatibilities(), name, "compatibility option"); }
-std::string to_string(TendonKind kind) { return name_of(tendons(), kind); }
-std::string to_string(FibreVelocity kind) { return name_of(velocities(), kind); }
-std::string to_string(Compatibility kind) { return name_of(compatibilities(), kind); }
+TendonKind parse_tendon(std::string_view name) {
+  return parse(tendons(), name, "kind of tendon");
+}
+FibreVelocity parse_fibre_velocity(std::string_view name) {
+  return parse(velocities(), name, "fibre velocity");
+}
+Compatibility parse_compatibility(std::string_view name) {
+  return parse(compatibilities(), name, "compatibility option");
+}
+std::string to_string(TendonKind kind) {
+  return name_of(tendons(), kind);
+}
+std::string to_string(FibreVelocity kind) {
+  return name_of(velocities(), kind);
+}
+std::string to_string(Compatibility kind) {
+  return name_of(compatibilities(), kind);
+}
 
 MuscleModelOptions ceinms_options(TendonKind tendon) {
   MuscleModelOptions options;
@@ -66,16 +80,19 @@ MuscleModelOptions ceinms_options(TendonKind tendon) {
   return options;
 }
 
-MuscleTendon::MuscleTendon(std::string name, const data::MuscleParameters& parameters, const MuscleModelOptions& options)
+MuscleTendon::MuscleTendon(std::string name, const data::MuscleParameters& parameters,
+                           const MuscleModelOptions& options)
     : name_(std::move(name)), parameters_(parameters), options_(options) {
   const data::MuscleParameters& p = parameters_;
   const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
   ParameterCheck check(fmt::format("muscle `{}`", name_));
-  check.require(positive(p.max_isometric_force_N), "max_isometric_force_N", p.max_isometric_force_N, "positive and finite");
-  check.require(positive(p.optimal_fibre_length_m), "optimal_fibre_length_m", p.optimal_fibre_length_m, "positive and finite");
+  check.require(positive(p.max_isometric_force_N), "max_isometric_force_N", p.max_isometric_force_N,
+                "positive and finite");
+  check.require(positive(p.optimal_fibre_length_m), "optimal_fibre_length_m", p.optimal_fibre_length_m,
+                "positive and finite");
   if (options.tendon == TendonKind::rigid) {
-    check.require(p.tendon_slack_length_m >= 0.0 && std::isfinite(p.tendon_slack_length_m), "tendon_slack_length_m",
-                  p.tendon_slack_length_m, "zero or positive, and finite");
+    check.require(p.tendon_slack_length_m >= 0.0 && std::isfinite(p.tendon_slack_length_m),
+                  "tendon_slack_length_m", p.tendon_slack_length_m, "zero or positive, and finite");
   } else {
     check.require(positive(p.tendon_slack_length_m), "tendon_slack_length_m", p.tendon_slack_length_m,
                   "positive and finite for an elastic tendon");

@@ -1,9 +1,10 @@
 #pragma once
 /// A Hill-type muscle-tendon unit: parameters and model choices, checked once, constant afterwards.
 ///
-///   F = F0 s [ a f_l(l~_a) f_v(v~, a) + f_p(l~) + d v~ ] cos(phi)                       (Zajac 1989, PMID 2676342)
-///   l_MT = l_M cos(phi) + l_T,   l_M sin(phi) = l_opt sin(phi_opt)                     (constant thickness)
-///   l~ = l_M / l_opt,  l~_a = l_M / (l_opt (1 + p (1 - a))),  v~ = v_M / (v_max l_opt) (p: Lloyd & Besier 2003,
+///   F = F0 s [ a f_l(l~_a) f_v(v~, a) + f_p(l~) + d v~ ] cos(phi)                       (Zajac 1989, PMID
+///   2676342) l_MT = l_M cos(phi) + l_T,   l_M sin(phi) = l_opt sin(phi_opt)                     (constant
+///   thickness) l~ = l_M / l_opt,  l~_a = l_M / (l_opt (1 + p (1 - a))),  v~ = v_M / (v_max l_opt) (p: Lloyd
+///   & Besier 2003,
 ///                                                                      doi:10.1016/S0021-9290(03)00010-1)
 
 #include <string>
@@ -33,11 +34,11 @@ enum class Compatibility {
 };
 
 struct MuscleModelOptions {
-  CurveSet curves;                              ///< default Lloyd & Besier 2003, monotone interpolant
+  CurveSet curves;  ///< default Lloyd & Besier 2003, monotone interpolant
   TendonKind tendon = TendonKind::rigid;
   FibreVelocity velocity = FibreVelocity::zero_lag;
   Compatibility compatibility = Compatibility::none;
-  double optimal_length_coupling = 0.0;         ///< p in [0, 1]
+  double optimal_length_coupling = 0.0;  ///< p in [0, 1]
 };
 
 /// All of CEINMS' choices: its spline through the points of Lloyd & Besier, p = 0.15, its conventions.
@@ -54,7 +55,8 @@ std::string to_string(Compatibility kind);
 
 class MuscleTendon {
  public:
-  /// Throws InputError("bad-parameter") carrying every parameter outside its range: muscle, parameter, value, range.
+  /// Throws InputError("bad-parameter") carrying every parameter outside its range: muscle, parameter, value,
+  /// range.
   MuscleTendon(std::string name, const data::MuscleParameters& parameters, const MuscleModelOptions& options);
 
   const std::string& name() const { return name_; }

@@ -36,8 +36,10 @@ double bisect(const std::array<double, 6>& x, double at) {
 
 QuinticBezier::QuinticBezier(const std::vector<Knot>& knots, const std::vector<double>& curviness) {
   if (knots.size() < 2 || curviness.size() + 1 != knots.size()) {
-    throw data::InputError("bad-curve", fmt::format("a Bézier curve needs at least two knots and one curviness per piece, "
-                                                    "got {} and {}", knots.size(), curviness.size()));
+    throw data::InputError("bad-curve",
+                           fmt::format("a Bézier curve needs at least two knots and one curviness per piece, "
+                                       "got {} and {}",
+                                       knots.size(), curviness.size()));
   }
   first_ = knots.front();
   last_ = knots.back();
@@ -46,15 +48,20 @@ QuinticBezier::QuinticBezier(const std::vector<Knot>& knots, const std::vector<d
     const Knot& b = knots[i + 1];
     const double cut = 0.1 + 0.8 * curviness[i];
     if (!(curviness[i] >= 0.0 && curviness[i] <= 1.0) || !(b.x > a.x)) {
-      throw data::InputError("bad-curve", fmt::format("piece {} of a Bézier curve: x must increase and the curviness lie "
-                                                      "in [0, 1], got x {} to {}, curviness {}", i, a.x, b.x, curviness[i]));
+      throw data::InputError("bad-curve",
+                             fmt::format("piece {} of a Bézier curve: x must increase and the curviness lie "
+                                         "in [0, 1], got x {} to {}, curviness {}",
+                                         i, a.x, b.x, curviness[i]));
     }
     const bool parallel = std::abs(a.slope - b.slope) < 1e-8;
-    const double xc = parallel ? 0.5 * (a.x + b.x) : (b.y - a.y - b.x * b.slope + a.x * a.slope) / (a.slope - b.slope);
+    const double xc =
+        parallel ? 0.5 * (a.x + b.x) : (b.y - a.y - b.x * b.slope + a.x * a.slope) / (a.slope - b.slope);
     const double yc = (xc - b.x) * b.slope + b.y;
     if (!(xc > a.x && xc < b.x)) {
-      throw data::InputError("bad-curve", fmt::format("piece {} of a Bézier curve: its end tangents meet at x = {}, outside "
-                                                      "[{}, {}]", i, xc, a.x, b.x));
+      throw data::InputError(
+          "bad-curve", fmt::format("piece {} of a Bézier curve: its end tangents meet at x = {}, outside "
+                                   "[{}, {}]",
+                                   i, xc, a.x, b.x));
     }
     Piece piece;
     piece.x_start = a.x;

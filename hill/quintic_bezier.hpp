@@ -2,9 +2,9 @@
 /// Curves y(x) made of quintic Bézier pieces with a C-shaped corner each (Millard, Uchida, Seth & Delp 2013,
 /// doi:10.1115/1.4023390, appendix): second derivatives are zero where pieces meet, so the whole is C².
 ///
-/// A piece runs from (x₀, y₀) with slope s₀ to (x₁, y₁) with slope s₁. Its tangents meet at (x_c, y_c); with the
-/// curviness c in [0, 1] the six control points are P₀, Q₀, Q₀, Q₁, Q₁, P₁, Qᵢ = Pᵢ + (0.1 + 0.8 c)(P_c - Pᵢ).
-/// y(x) = y(u(x)), and u(x) is the root of the monotone quintic x(u) = x.
+/// A piece runs from (x₀, y₀) with slope s₀ to (x₁, y₁) with slope s₁. Its tangents meet at (x_c, y_c); with
+/// the curviness c in [0, 1] the six control points are P₀, Q₀, Q₀, Q₁, Q₁, P₁, Qᵢ = Pᵢ + (0.1 + 0.8 c)(P_c -
+/// Pᵢ). y(x) = y(u(x)), and u(x) is the root of the monotone quintic x(u) = x.
 
 #include <array>
 #include <cmath>
@@ -22,9 +22,10 @@ class QuinticBezier {
   };
 
   QuinticBezier() = default;
-  /// Throws InputError("bad-curve") unless x increases strictly, 0 <= curviness <= 1, and the tangents of each piece
-  /// meet between its ends.
-  QuinticBezier(const std::vector<Knot>& knots, double curviness) : QuinticBezier(knots, std::vector<double>(knots.size() - 1, curviness)) {}
+  /// Throws InputError("bad-curve") unless x increases strictly, 0 <= curviness <= 1, and the tangents of
+  /// each piece meet between its ends.
+  QuinticBezier(const std::vector<Knot>& knots, double curviness)
+      : QuinticBezier(knots, std::vector<double>(knots.size() - 1, curviness)) {}
   /// One curviness for each piece.
   QuinticBezier(const std::vector<Knot>& knots, const std::vector<double>& curviness);
 
@@ -51,8 +52,8 @@ class QuinticBezier {
       const std::size_t k = static_cast<std::size_t>(cell);
       double u = guess[k] + (cell - static_cast<double>(k)) * (guess[k + 1] - guess[k]);
       double rate = 1.0;
-      // Newton's error squares: what is left after a step below 1e-9 is rounding. Two steps do nearly everywhere, a
-      // third where a strong curviness makes x(u) flat.
+      // Newton's error squares: what is left after a step below 1e-9 is rounding. Two steps do nearly
+      // everywhere, a third where a strong curviness makes x(u) flat.
       double step = 1.0;
       for (int i = 0; i < 8 && std::abs(step) > 1e-9; ++i) {
         const double value = ((((x[5] * u + x[4]) * u + x[3]) * u + x[2]) * u + x[1]) * u + x[0];

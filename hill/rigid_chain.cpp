@@ -13,8 +13,12 @@ std::span<const double> path_rate(const ChainInput& in) {
   const std::size_t n = in.frames();
   std::vector<double>& rate = in.scratch.array(kRate, n);
   switch (in.muscle.options().velocity) {
-    case FibreVelocity::none: std::fill(rate.begin(), rate.end(), 0.0); break;
-    case FibreVelocity::zero_lag: central_differences(in.L, in.step_s, rate); break;
+    case FibreVelocity::none:
+      std::fill(rate.begin(), rate.end(), 0.0);
+      break;
+    case FibreVelocity::zero_lag:
+      central_differences(in.L, in.step_s, rate);
+      break;
     case FibreVelocity::causal: {
       const BackwardDifference d{in.step_s};
       rate[0] = 0.0;
@@ -63,8 +67,9 @@ void run(const ChainInput& in, const Set& set) {
       for (std::size_t i = 0; i < kParameterCount; ++i) {
         if (direct[i] == nullptr) continue;
         const MuscleParameter p = kAllParameters[i];
-        const double Q_p = p == MuscleParameter::tendon_slack_length ? -q.Q_z
-                                                                     : dQ(q, c, w, p) + relative_dS(in.muscle, p) * q.Q;
+        const double Q_p = p == MuscleParameter::tendon_slack_length
+                               ? -q.Q_z
+                               : dQ(q, c, w, p) + relative_dS(in.muscle, p) * q.Q;
         direct[i][k] = scale * Q_p;
       }
     }
@@ -73,7 +78,8 @@ void run(const ChainInput& in, const Set& set) {
     for (const Tangent& t : in.tangents) {
       const double* p = t.parameter ? direct[index_of(*t.parameter)] : nullptr;
       for (std::size_t k = 0; k < n; ++k) {
-        t.dforce[k] = (t.dactivation.empty() ? 0.0 : by_activation[k] * t.dactivation[k]) + (p != nullptr ? p[k] : 0.0);
+        t.dforce[k] =
+            (t.dactivation.empty() ? 0.0 : by_activation[k] * t.dactivation[k]) + (p != nullptr ? p[k] : 0.0);
       }
     }
   }

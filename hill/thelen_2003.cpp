@@ -8,12 +8,15 @@ Thelen2003::Thelen2003(const Parameters& p) : p_(p) {
   ParameterCheck check("curve set `thelen_2003`");
   check.require(p.active_width > 0, "active_width", p.active_width, "positive");
   check.require(p.passive_shape > 0, "passive_shape", p.passive_shape, "positive");
-  check.require(p.passive_strain_at_one_force > 0, "passive_strain_at_one_force", p.passive_strain_at_one_force, "positive");
-  check.require(p.tendon_strain_at_one_force > 0, "tendon_strain_at_one_force", p.tendon_strain_at_one_force, "positive");
+  check.require(p.passive_strain_at_one_force > 0, "passive_strain_at_one_force",
+                p.passive_strain_at_one_force, "positive");
+  check.require(p.tendon_strain_at_one_force > 0, "tendon_strain_at_one_force", p.tendon_strain_at_one_force,
+                "positive");
   check.require(p.velocity_shape > 0, "velocity_shape", p.velocity_shape, "positive");
   check.require(p.max_lengthening_force > 1, "max_lengthening_force", p.max_lengthening_force, "above 1");
   check.require(p.extrapolation_threshold * p.max_lengthening_force > 1 && p.extrapolation_threshold < 1,
-                "extrapolation_threshold", p.extrapolation_threshold, "above 1/max_lengthening_force and below 1");
+                "extrapolation_threshold", p.extrapolation_threshold,
+                "above 1/max_lengthening_force and below 1");
   check.finish();
 
   inverse_width_ = 1.0 / p.active_width;

@@ -1,11 +1,12 @@
 #pragma once
 /// Curves of Thelen 2003, doi:10.1115/1.1531112, as OpenSim's Thelen2003Muscle evaluates them.
 ///
-///   f_l(x) = exp(-(x - 1)²/γ)                                                                           (eq. 4)
-///   f_p(x) = (exp(k_PE (x - 1)/e₀) - 1)/(exp(k_PE) - 1) for x > 1, else 0                               (eq. 3)
-///   f_t(e) = F_toe (exp(k_toe e/e_toe) - 1)/(exp(k_toe) - 1) for 0 < e <= e_toe, k_lin (e - e_toe) + F_toe beyond
+///   f_l(x) = exp(-(x - 1)²/γ)                                                                           (eq.
+///   4) f_p(x) = (exp(k_PE (x - 1)/e₀) - 1)/(exp(k_PE) - 1) for x > 1, else 0 (eq. 3) f_t(e) = F_toe
+///   (exp(k_toe e/e_toe) - 1)/(exp(k_toe) - 1) for 0 < e <= e_toe, k_lin (e - e_toe) + F_toe beyond
 ///            F_toe = 0.33, k_toe = 3, e_toe = 99 e₁ e³/(166 e³ - 67) (the paper prints 0.609 e₁, rounded),
-///            k_lin = 0.67/(e₁ - e_toe)                                                                  (eq. 5)
+///            k_lin = 0.67/(e₁ - e_toe)                                                                  (eq.
+///            5)
 ///
 /// The force-velocity relation is published as v~(F, a) (eqs. 6, 7):
 ///   v~ = k (F - a f_l)/b, k = 0.25 + 0.75 a,
@@ -33,7 +34,8 @@ class Thelen2003 {
     double tendon_strain_at_one_force = 0.04;  ///< e₁ > 0
     double velocity_shape = 0.25;              ///< A_f > 0
     double max_lengthening_force = 1.4;        ///< F_len > 1
-    double extrapolation_threshold = 0.95;     ///< fraction of F_len where the linear continuation starts, in (1/F_len, 1)
+    double extrapolation_threshold =
+        0.95;  ///< fraction of F_len where the linear continuation starts, in (1/F_len, 1)
   };
   static Parameters arm26() { return {0.5, 4.0, 0.6, 0.033, 0.3, 1.8, 0.95}; }
 
@@ -65,13 +67,17 @@ class Thelen2003 {
 
   data::CurveValue tendon(double strain) const {
     if (strain <= 0.0) return {0.0, 0.0};
-    if (strain > toe_strain_) return {tendon_stiffness_ * (strain - toe_strain_) + kToeForce, tendon_stiffness_};
+    if (strain > toe_strain_)
+      return {tendon_stiffness_ * (strain - toe_strain_) + kToeForce, tendon_stiffness_};
     const double e = std::exp(toe_rate_ * strain);
     return {(e - 1.0) * toe_scale_, toe_rate_ * e * toe_scale_};
   }
 
   CurveDomains domains() const {
-    return {{0.0, 2.0}, {0.0, 1.0 + p_.passive_strain_at_one_force}, {-1.0, 1.0}, {0.0, 2.0 * p_.tendon_strain_at_one_force}};
+    return {{0.0, 2.0},
+            {0.0, 1.0 + p_.passive_strain_at_one_force},
+            {-1.0, 1.0},
+            {0.0, 2.0 * p_.tendon_strain_at_one_force}};
   }
 
  private:

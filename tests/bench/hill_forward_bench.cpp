@@ -1,6 +1,7 @@
-// Speed of the forward chain, one core: activation, fibre kinematics, force, moment, in muscle-frames per second.
-// Seven muscles over 20 s at 200 Hz: lengths and moment arms of a slow curl, excitations of co-contracting muscles.
-// The activation part is the recursion and the exponential nonlinearity as an EMG-driven model has them.
+// Speed of the forward chain, one core: activation, fibre kinematics, force, moment, in muscle-frames per
+// second. Seven muscles over 20 s at 200 Hz: lengths and moment arms of a slow curl, excitations of
+// co-contracting muscles. The activation part is the recursion and the exponential nonlinearity as an
+// EMG-driven model has them.
 //
 //   ./hill_forward_bench --benchmark_min_time=1
 
@@ -32,10 +33,11 @@ std::vector<Muscle> elbow() {
     p.pennation_at_optimal_rad = phi;
     return Muscle{p, lo * std::cos(phi) * 0.95 + ls * 1.005, amplitude, arm};
   };
-  return {make(798.52, 0.134, 0.143, 0.20944, 0.012, -0.021), make(624.3, 0.1138, 0.098, 0.15708, 0.012, -0.021),
-          make(624.3, 0.1138, 0.0908, 0.15708, 0.012, -0.021), make(624.3, 0.1157, 0.2723, 0.0, -0.015, 0.038),
-          make(435.56, 0.1321, 0.1923, 0.0, -0.015, 0.038),    make(987.26, 0.0858, 0.0535, 0.0, -0.010, 0.024),
-          make(261.33, 0.1726, 0.133, 0.0, -0.030, 0.053)};
+  return {
+      make(798.52, 0.134, 0.143, 0.20944, 0.012, -0.021),  make(624.3, 0.1138, 0.098, 0.15708, 0.012, -0.021),
+      make(624.3, 0.1138, 0.0908, 0.15708, 0.012, -0.021), make(624.3, 0.1157, 0.2723, 0.0, -0.015, 0.038),
+      make(435.56, 0.1321, 0.1923, 0.0, -0.015, 0.038),    make(987.26, 0.0858, 0.0535, 0.0, -0.010, 0.024),
+      make(261.33, 0.1726, 0.133, 0.0, -0.030, 0.053)};
 }
 
 struct Trial {
@@ -65,7 +67,8 @@ struct Trial {
 
 void activate(const std::vector<double>& e, std::vector<double>& a) {
   constexpr double c1 = -0.5, c2 = -0.5, shape = -1.5;
-  const double gain = (1.0 + c1) * (1.0 + c2), first = c1 + c2, second = c1 * c2, scale = 1.0 / (std::exp(shape) - 1.0);
+  const double gain = (1.0 + c1) * (1.0 + c2), first = c1 + c2, second = c1 * c2,
+               scale = 1.0 / (std::exp(shape) - 1.0);
   double u1 = e[0], u2 = e[0];
   for (std::size_t k = 0; k < e.size(); ++k) {
     const double u = gain * e[k] - first * u1 - second * u2;
@@ -79,7 +82,8 @@ void activate(const std::vector<double>& e, std::vector<double>& a) {
 void run(benchmark::State& state, const hill::MuscleModelOptions& options, std::size_t tangents) {
   const Trial trial;
   std::vector<hill::MuscleTendon> muscles;
-  for (const Muscle& m : elbow()) muscles.emplace_back("m" + std::to_string(muscles.size()), m.parameters, options);
+  for (const Muscle& m : elbow())
+    muscles.emplace_back("m" + std::to_string(muscles.size()), m.parameters, options);
   hill::MuscleScratch scratch;
   hill::MuscleTrace out;
   std::vector<double> a(Trial::kFrames), moment(Trial::kFrames);
@@ -90,9 +94,12 @@ void run(benchmark::State& state, const hill::MuscleModelOptions& options, std::
       activate(trial.excitation[m], a);
       std::vector<hill::Tangent> wanted;
       for (std::size_t i = 0; i < tangents; ++i) {
-        wanted.push_back({a, i == 0 ? std::optional(hill::MuscleParameter::tendon_slack_length) : std::nullopt, derivative[i]});
+        wanted.push_back({a,
+                          i == 0 ? std::optional(hill::MuscleParameter::tendon_slack_length) : std::nullopt,
+                          derivative[i]});
       }
-      hill::forward(muscles[m], {Trial::kRate, trial.length[m], trial.velocity[m], trial.arm[m]}, a, scratch, out, wanted);
+      hill::forward(muscles[m], {Trial::kRate, trial.length[m], trial.velocity[m], trial.arm[m]}, a, scratch,
+                    out, wanted);
       for (std::size_t k = 0; k < moment.size(); ++k) moment[k] += out.moment_N_m[k];
     }
     benchmark::DoNotOptimize(moment.data());
@@ -102,7 +109,8 @@ void run(benchmark::State& state, const hill::MuscleModelOptions& options, std::
 }
 
 [[maybe_unused]] const bool kRegistered = [] {
-  const auto add = [](const std::string& name, const hill::MuscleModelOptions& options, std::size_t tangents) {
+  const auto add = [](const std::string& name, const hill::MuscleModelOptions& options,
+                      std::size_t tangents) {
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) { run(s, options, tangents); });
   };
   for (const std::string& set : hill::CurveSet::names()) {

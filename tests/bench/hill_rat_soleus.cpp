@@ -1,12 +1,12 @@
 // Measured force of a maximally activated rat soleus under imposed length changes (Krylow & Sandercock 1997,
-// doi:10.1016/S0021-9290(96)00097-8) against the models of this folder: mean absolute error in % of F0, beside
-// what Millard et al. 2013 (doi:10.1115/1.4023390) report for theirs.
+// doi:10.1016/S0021-9290(96)00097-8) against the models of this folder: mean absolute error in % of F0,
+// beside what Millard et al. 2013 (doi:10.1115/1.4023390) report for theirs.
 //
 //   ./hill_rat_soleus <folder of recordings>/rat_soleus
 //
-// Assumptions, since the files do not say: displacement 0 is the length at which the fully active muscle at rest has
-// its fibres at optimal length; activation is 1 throughout, so the first 0.3 s, in which the force rises from 0, are
-// left out of the error.
+// Assumptions, since the files do not say: displacement 0 is the length at which the fully active muscle at
+// rest has its fibres at optimal length; activation is 1 throughout, so the first 0.3 s, in which the force
+// rises from 0, are left out of the error.
 
 #include <cmath>
 #include <cstdio>
@@ -67,10 +67,13 @@ double resting_strain(const hill::CurveSet& curves, double force) {
 
 double error_percent(const std::string& folder, int trial, const hill::MuscleModelOptions& options) {
   const data::MuscleParameters p = soleus();
-  const Series shape = read(folder + "/displacement.dat"), force = read(folder + "/force_trial" + std::to_string(trial + 1) + ".dat");
+  const Series shape = read(folder + "/displacement.dat"),
+               force = read(folder + "/force_trial" + std::to_string(trial + 1) + ".dat");
   const auto displacement = data::PiecewiseCubic::forsythe(shape.time_s, shape.value);
   const double projected = p.optimal_fibre_length_m * std::cos(p.pennation_at_optimal_rad);
-  const double strain = options.tendon == hill::TendonKind::rigid ? 0.0 : resting_strain(options.curves, std::cos(p.pennation_at_optimal_rad));
+  const double strain = options.tendon == hill::TendonKind::rigid
+                            ? 0.0
+                            : resting_strain(options.curves, std::cos(p.pennation_at_optimal_rad));
   const std::size_t n = static_cast<std::size_t>(shape.time_s.back() * kRate) + 1;
   std::vector<double> length(n), velocity(n), activation(n, 1.0), time(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -81,7 +84,8 @@ double error_percent(const std::string& folder, int trial, const hill::MuscleMod
   }
   hill::MuscleScratch scratch;
   hill::MuscleTrace out;
-  hill::forward(hill::MuscleTendon("soleus", p, options), {kRate, length, velocity, {}}, activation, scratch, out);
+  hill::forward(hill::MuscleTendon("soleus", p, options), {kRate, length, velocity, {}}, activation, scratch,
+                out);
   const auto measured = data::PiecewiseCubic::monotone(force.time_s, force.value);
   double sum = 0.0;
   std::size_t count = 0;
@@ -97,7 +101,9 @@ double error_percent(const std::string& folder, int trial, const hill::MuscleMod
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "usage: hill_rat_soleus <folder with displacement.dat and force_trial1.dat to force_trial6.dat>\n");
+    std::fprintf(
+        stderr,
+        "usage: hill_rat_soleus <folder with displacement.dat and force_trial1.dat to force_trial6.dat>\n");
     return 2;
   }
   std::printf("mean absolute error, %% of F0; amplitude in mm\n%-22s %-16s", "curves", "tendon");
@@ -121,5 +127,7 @@ int main(int argc, char** argv) {
       std::printf("\n");
     }
   }
-  std::printf("reported by Millard et al. 2013 at maximal activation: 3.3 to 8.9 with an elastic tendon, 20.9 at most with a rigid one\n");
+  std::printf(
+      "reported by Millard et al. 2013 at maximal activation: 3.3 to 8.9 with an elastic tendon, 20.9 at "
+      "most with a rigid one\n");
 }

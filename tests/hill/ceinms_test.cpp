@@ -28,7 +28,8 @@ TEST(Ceinms, TheMonotoneInterpolantIsNotWhatItUses) {
   EXPECT_GT(largest_difference(ref.moment(o), ref.torque.at("elbow_flexion")), 0.1);
 }
 
-// The force of the fibres at CEINMS' own fibre lengths, written with the public curves: its scheme without its root.
+// The force of the fibres at CEINMS' own fibre lengths, written with the public curves: its scheme without
+// its root.
 TEST(Ceinms, ElasticForceFollowsFromItsOwnFibreLengthsTo1eMinus9) {
   BRACHIUM_NEEDS_REFERENCE();
   const ElbowReference ref("equilibriumElastic");
@@ -41,10 +42,12 @@ TEST(Ceinms, ElasticForceFollowsFromItsOwnFibreLengthsTo1eMinus9) {
     const std::vector<double>& l = ref.fibre.at(m.name);
     spline.apply(l, slope);
     for (std::size_t k = 0; k < l.size(); ++k) {
-      const double a = ref.activation.at(m.name)[k], lo = p.optimal_fibre_length_m, vn = slope[k] / (10.0 * lo);
+      const double a = ref.activation.at(m.name)[k], lo = p.optimal_fibre_length_m,
+                   vn = slope[k] / (10.0 * lo);
       const double cosine = std::cos(std::asin(lo * std::sin(p.pennation_at_optimal_rad) / l[k]));
-      const double fibre = a * curves.active(l[k] / (lo * (1.0 + 0.15 * (1.0 - a)))).value * curves.velocity(vn, a).value +
-                           curves.passive(l[k] / lo).value + 0.1 * vn;
+      const double fibre =
+          a * curves.active(l[k] / (lo * (1.0 + 0.15 * (1.0 - a)))).value * curves.velocity(vn, a).value +
+          curves.passive(l[k] / lo).value + 0.1 * vn;
       moment[k] += ref.arm.at(m.name)[k] * p.max_isometric_force_N * fibre * cosine;
     }
   }
@@ -66,9 +69,11 @@ TEST(Ceinms, ElasticFibreLengthsAreRootsOfOurEquationWithinItsTolerance) {
       const double a = ref.activation.at(m.name)[k], L = ref.length.at(m.name)[k];
       const auto residual = [&](double x) {
         const double cosine = std::cos(std::asin(lo * std::sin(p.pennation_at_optimal_rad) / x));
-        const double vn = (11.0 * x - 18.0 * l[k - 1] + 9.0 * l[k - 2] - 2.0 * l[k - 3]) / (6.0 * h) / (10.0 * lo);
-        const double fibre = a * curves.active(x / (lo * (1.0 + 0.15 * (1.0 - a)))).value * curves.velocity(vn, a).value +
-                             curves.passive(x / lo).value + 0.1 * vn;
+        const double vn =
+            (11.0 * x - 18.0 * l[k - 1] + 9.0 * l[k - 2] - 2.0 * l[k - 3]) / (6.0 * h) / (10.0 * lo);
+        const double fibre =
+            a * curves.active(x / (lo * (1.0 + 0.15 * (1.0 - a)))).value * curves.velocity(vn, a).value +
+            curves.passive(x / lo).value + 0.1 * vn;
         return curves.tendon((L - x * cosine) / p.tendon_slack_length_m - 1.0).value - fibre * cosine;
       };
       double lower = l[k] - 1e-5, upper = l[k] + 1e-5;
@@ -88,7 +93,8 @@ TEST(Ceinms, ElasticFibreLengthsAreRootsOfOurEquationWithinItsTolerance) {
 TEST(Ceinms, ElasticTorqueDiffersByWhatItsRootToleranceMakesOfIt) {
   BRACHIUM_NEEDS_REFERENCE();
   const ElbowReference ref("equilibriumElastic");
-  const double worst = largest_difference(ref.moment(ceinms_options(TendonKind::elastic)), ref.torque.at("elbow_flexion"));
+  const double worst =
+      largest_difference(ref.moment(ceinms_options(TendonKind::elastic)), ref.torque.at("elbow_flexion"));
   EXPECT_LT(worst, 0.032);
   EXPECT_NEAR(worst, 0.0217, 0.0005);
 }
@@ -103,9 +109,15 @@ TEST(Ceinms, EachDifferenceOfOurDefaultsHasItsNumber) {
   };
   const Row rows[] = {
       {"monotone interpolant", [](MuscleModelOptions& o) { o.curves = Lloyd2003(); }, 0.989, 0.825},
-      {"optimal length without coupling", [](MuscleModelOptions& o) { o.optimal_length_coupling = 0.0; }, 6.02, 5.72},
-      {"velocity and equilibrium", [](MuscleModelOptions& o) { o.compatibility = Compatibility::none; }, 6.4e-7, 0.0904},
-      {"all of them", [](MuscleModelOptions& o) { o = MuscleModelOptions{{}, o.tendon, {}, {}, 0.0}; }, 5.84, 5.43},
+      {"optimal length without coupling", [](MuscleModelOptions& o) { o.optimal_length_coupling = 0.0; },
+       6.02, 5.72},
+      {"velocity and equilibrium", [](MuscleModelOptions& o) { o.compatibility = Compatibility::none; },
+       6.4e-7, 0.0904},
+      {"all of them",
+       [](MuscleModelOptions& o) {
+         o = MuscleModelOptions{{}, o.tendon, {}, {}, 0.0};
+       },
+       5.84, 5.43},
   };
   const ElbowReference stiff("stiff"), elastic("equilibriumElastic");
   for (const Row& row : rows) {
@@ -116,7 +128,8 @@ TEST(Ceinms, EachDifferenceOfOurDefaultsHasItsNumber) {
       row.apply(o);
       const auto ours = ref.moment(o);
       const double stated = tendon == TendonKind::rigid ? row.rigid_N_m : row.elastic_N_m;
-      EXPECT_NEAR(largest_difference(ours, theirs), stated, 0.01 * stated) << row.difference << ' ' << to_string(tendon);
+      EXPECT_NEAR(largest_difference(ours, theirs), stated, 0.01 * stated)
+          << row.difference << ' ' << to_string(tendon);
       if (o.compatibility == Compatibility::none && o.optimal_length_coupling > 0.0) {
         // Only the start differs: CEINMS takes the first fibre at rest, we take the first tendon at rest.
         EXPECT_LT(largest_difference(ours, theirs, 200), 0.0016);

@@ -19,19 +19,26 @@ struct Anchor {
 
 TEST(DeGrooteFregly2016Curves, MeetThePublishedAnchors) {
   const DeGrooteFregly2016 set;
-  for (const Anchor a : {Anchor{0.5, 0.054112153014}, {0.8, 0.836439566115}, {1.0, 1.0}, {1.2, 0.793689718066}, {1.5, 0.226148627897}}) {
+  for (const Anchor a : {Anchor{0.5, 0.054112153014},
+                         {0.8, 0.836439566115},
+                         {1.0, 1.0},
+                         {1.2, 0.793689718066},
+                         {1.5, 0.226148627897}}) {
     EXPECT_NEAR(set.active(a.x).value, a.y, 1e-11) << a.x;
   }
-  for (const Anchor a : {Anchor{-1.0, 0.0}, {-0.5, 0.234036393549}, {0.0, 1.0}, {0.5, 1.58842340125}, {1.0, 1.794342963555}}) {
+  for (const Anchor a :
+       {Anchor{-1.0, 0.0}, {-0.5, 0.234036393549}, {0.0, 1.0}, {0.5, 1.58842340125}, {1.0, 1.794342963555}}) {
     EXPECT_NEAR(set.velocity(a.x, 0.5).value, a.y, 1e-11) << a.x;
   }
-  for (const Anchor a : {Anchor{1.0, 0.01822882382}, {1.2, 0.06940116117}, {1.6, 1.0}}) EXPECT_NEAR(set.passive(a.x).value, a.y, 1e-11) << a.x;
+  for (const Anchor a : {Anchor{1.0, 0.01822882382}, {1.2, 0.06940116117}, {1.6, 1.0}})
+    EXPECT_NEAR(set.passive(a.x).value, a.y, 1e-11) << a.x;
   EXPECT_NEAR(set.tendon(0.02).value, 0.215568624601, 1e-11);
   EXPECT_NEAR(set.tendon(0.049).value, 1.0, 1e-12);
 }
 
 TEST(DeGrooteFregly2016Curves, TheWidthsSquareMatters) {
-  // The supplement prints the Gaussians without the square on the width; at x = 1.2 that is off by 1.4 % of F0.
+  // The supplement prints the Gaussians without the square on the width; at x = 1.2 that is off by 1.4 % of
+  // F0.
   const double x = 1.2, b2 = 1.055033428970575, width = 0.162384573599574 + 0.063303448465465 * x;
   const double printed = 0.8150671134243542 * std::exp(-0.5 * (x - b2) * (x - b2) / width);
   EXPECT_GT(std::abs(printed - DeGrooteFregly2016().active(x).value), 0.01);
@@ -56,7 +63,8 @@ TEST(Thelen2003Curves, MeetTheAnchorsOfBothParameterSets) {
 double published_velocity(double F, double a, double fl, const Thelen2003::Parameters& p) {
   const double afl = a * fl;
   const double b = F <= afl ? afl + F / p.velocity_shape
-                            : (2.0 + 2.0 / p.velocity_shape) * (afl * p.max_lengthening_force - F) / (p.max_lengthening_force - 1.0);
+                            : (2.0 + 2.0 / p.velocity_shape) * (afl * p.max_lengthening_force - F) /
+                                  (p.max_lengthening_force - 1.0);
   return (0.25 + 0.75 * a) * (F - afl) / b;
 }
 
@@ -117,8 +125,10 @@ TEST(Millard2012Curves, EqualABezierCurveDrawnByDeCasteljau) {
   const Millard2012::Parameters p;
   const double foot = 0.1 / p.passive_stiffness_at_one_force;  // 0.035
   const double x0 = 1.0 + foot, y0 = 0.5 * foot * 0.2, s0 = 0.2, x1 = 1.7, y1 = 1.0, s1 = 2.0 / 0.7;
-  const double xc = (y1 - y0 - x1 * s1 + x0 * s0) / (s0 - s1), yc = y0 + s0 * (xc - x0), cut = 0.1 + 0.8 * 0.75;
-  const double qx0 = x0 + cut * (xc - x0), qy0 = y0 + cut * (yc - y0), qx1 = x1 + cut * (xc - x1), qy1 = y1 + cut * (yc - y1);
+  const double xc = (y1 - y0 - x1 * s1 + x0 * s0) / (s0 - s1), yc = y0 + s0 * (xc - x0),
+               cut = 0.1 + 0.8 * 0.75;
+  const double qx0 = x0 + cut * (xc - x0), qy0 = y0 + cut * (yc - y0), qx1 = x1 + cut * (xc - x1),
+               qy1 = y1 + cut * (yc - y1);
   const auto casteljau = [](std::array<double, 6> b, double u) {
     for (int level = 5; level > 0; --level) {
       for (int j = 0; j < level; ++j) b[j] += u * (b[j + 1] - b[j]);
@@ -127,7 +137,8 @@ TEST(Millard2012Curves, EqualABezierCurveDrawnByDeCasteljau) {
   };
   const Millard2012 set;
   for (double u = 0.0; u <= 1.0; u += 0.01) {
-    const double x = casteljau({x0, qx0, qx0, qx1, qx1, x1}, u), y = casteljau({y0, qy0, qy0, qy1, qy1, y1}, u);
+    const double x = casteljau({x0, qx0, qx0, qx1, qx1, x1}, u),
+                 y = casteljau({y0, qy0, qy0, qy1, qy1, y1}, u);
     EXPECT_NEAR(set.passive(x).value, y, 1e-13) << u;
   }
 }
@@ -136,33 +147,52 @@ TEST(Lloyd2003Curves, PassThroughTheirPoints) {
   const Lloyd2003::Table t = Lloyd2003::published();
   for (const auto kind : {Lloyd2003::Interpolant::monotone, Lloyd2003::Interpolant::spline}) {
     const Lloyd2003 set(kind);
-    for (std::size_t i = 0; i < t.active.x.size(); ++i) EXPECT_NEAR(set.active(t.active.x[i]).value, t.active.y[i], 1e-14);
-    for (std::size_t i = 0; i < t.passive.x.size(); ++i) EXPECT_NEAR(set.passive(t.passive.x[i]).value, t.passive.y[i], 1e-14);
-    for (std::size_t i = 0; i < t.velocity.x.size(); ++i) EXPECT_NEAR(set.velocity(t.velocity.x[i], 1.0).value, t.velocity.y[i], 1e-14);
-    for (std::size_t i = 0; i < t.tendon.x.size(); ++i) EXPECT_NEAR(set.tendon(t.tendon.x[i]).value, t.tendon.y[i], 1e-11);
+    for (std::size_t i = 0; i < t.active.x.size(); ++i)
+      EXPECT_NEAR(set.active(t.active.x[i]).value, t.active.y[i], 1e-14);
+    for (std::size_t i = 0; i < t.passive.x.size(); ++i)
+      EXPECT_NEAR(set.passive(t.passive.x[i]).value, t.passive.y[i], 1e-14);
+    for (std::size_t i = 0; i < t.velocity.x.size(); ++i)
+      EXPECT_NEAR(set.velocity(t.velocity.x[i], 1.0).value, t.velocity.y[i], 1e-14);
+    for (std::size_t i = 0; i < t.tendon.x.size(); ++i)
+      EXPECT_NEAR(set.tendon(t.tendon.x[i]).value, t.tendon.y[i], 1e-11);
   }
 }
 
 TEST(Lloyd2003Curves, AreTheInterpolantsOfTheModelFolderToTheLastBit) {
   const Lloyd2003::Table t = Lloyd2003::published();
   const Lloyd2003 monotone, spline(Lloyd2003::Interpolant::spline);
-  const auto compare = [](const Lloyd2003::Points& points, double from, double to, const auto& a, const auto& b) {
-    const auto pa = data::PiecewiseCubic::monotone(points.x, points.y), pb = data::PiecewiseCubic::forsythe(points.x, points.y);
+  const auto compare = [](const Lloyd2003::Points& points, double from, double to, const auto& a,
+                          const auto& b) {
+    const auto pa = data::PiecewiseCubic::monotone(points.x, points.y),
+               pb = data::PiecewiseCubic::forsythe(points.x, points.y);
     for (int i = 0; i <= 4001; ++i) {
       // Also exactly at knots, and outside.
-      const double x = i < 4000 ? from + (to - from) * i / 3999.0 : points.x[static_cast<std::size_t>(i) % points.x.size()];
+      const double x = i < 4000 ? from + (to - from) * i / 3999.0
+                                : points.x[static_cast<std::size_t>(i) % points.x.size()];
       EXPECT_EQ(a(x).value, pa(x).value) << x;
       EXPECT_EQ(a(x).slope, pa(x).slope) << x;
       EXPECT_EQ(b(x).value, pb(x).value) << x;
       EXPECT_EQ(b(x).slope, pb(x).slope) << x;
     }
   };
-  compare(t.active, -6.0, 6.0, [&](double x) { return monotone.active(x); }, [&](double x) { return spline.active(x); });
-  compare(t.active, 0.39, 1.63, [&](double x) { return monotone.active(x); }, [&](double x) { return spline.active(x); });
-  compare(t.passive, 0.99, 1.61, [&](double x) { return monotone.passive(x); }, [&](double x) { return spline.passive(x); });
-  compare(t.velocity, -11.0, 11.0, [&](double x) { return monotone.velocity(x, 1.0); }, [&](double x) { return spline.velocity(x, 1.0); });
-  compare(t.tendon, -0.01, 0.02, [&](double x) { return monotone.tendon(x); }, [&](double x) { return spline.tendon(x); });
-  compare(t.tendon, -11.0, 21.0, [&](double x) { return monotone.tendon(x); }, [&](double x) { return spline.tendon(x); });
+  compare(
+      t.active, -6.0, 6.0, [&](double x) { return monotone.active(x); },
+      [&](double x) { return spline.active(x); });
+  compare(
+      t.active, 0.39, 1.63, [&](double x) { return monotone.active(x); },
+      [&](double x) { return spline.active(x); });
+  compare(
+      t.passive, 0.99, 1.61, [&](double x) { return monotone.passive(x); },
+      [&](double x) { return spline.passive(x); });
+  compare(
+      t.velocity, -11.0, 11.0, [&](double x) { return monotone.velocity(x, 1.0); },
+      [&](double x) { return spline.velocity(x, 1.0); });
+  compare(
+      t.tendon, -0.01, 0.02, [&](double x) { return monotone.tendon(x); },
+      [&](double x) { return spline.tendon(x); });
+  compare(
+      t.tendon, -11.0, 21.0, [&](double x) { return monotone.tendon(x); },
+      [&](double x) { return spline.tendon(x); });
 }
 
 TEST(Lloyd2003Curves, OnlyTheSplineOvershoots) {
@@ -191,11 +221,14 @@ TEST(Guenther2007Curves, AreABellWithTwoFlanks) {
 }
 
 class EverySet : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Curves, EverySet, ::testing::ValuesIn(CurveSet::names()), [](const auto& set) { return set.param; });
+INSTANTIATE_TEST_SUITE_P(Curves, EverySet, ::testing::ValuesIn(CurveSet::names()),
+                         [](const auto& set) { return set.param; });
 
 // Points away from the kinks of the piecewise sets.
-constexpr double kLengths[] = {0.4733, 0.5771, 0.6913, 0.8137, 0.9513, 1.0377, 1.1291, 1.2731, 1.4133, 1.5577};
-constexpr double kVelocities[] = {-0.9513, -0.7719, -0.4417, -0.2123, -0.0517, 0.0531, 0.2153, 0.4477, 0.7711, 0.9211};
+constexpr double kLengths[] = {0.4733, 0.5771, 0.6913, 0.8137, 0.9513,
+                               1.0377, 1.1291, 1.2731, 1.4133, 1.5577};
+constexpr double kVelocities[] = {-0.9513, -0.7719, -0.4417, -0.2123, -0.0517,
+                                  0.0531,  0.2153,  0.4477,  0.7711,  0.9211};
 constexpr double kStrains[] = {0.0007, 0.0021, 0.0077, 0.0133, 0.0197, 0.0311, 0.0443};
 
 // The whole comparison, so that a wrong slope can be shown to fail it.
@@ -213,10 +246,12 @@ double worst_slope_error(const CurveSet& set, const Change& change) {
   for (const double v : kVelocities) {
     for (const double a : {0.2, 0.9}) {
       hold(set.velocity(v, a).slope, slope_of([&](double t) { return set.velocity(t, a).value; }, v, h));
-      hold(set.velocity(v, a).slope_activation, slope_of([&](double t) { return set.velocity(v, t).value; }, a, h));
+      hold(set.velocity(v, a).slope_activation,
+           slope_of([&](double t) { return set.velocity(v, t).value; }, a, h));
     }
   }
-  for (const double e : kStrains) hold(set.tendon(e).slope, slope_of([&](double t) { return set.tendon(t).value; }, e, 0.1 * h));
+  for (const double e : kStrains)
+    hold(set.tendon(e).slope, slope_of([&](double t) { return set.tendon(t).value; }, e, 0.1 * h));
   return worst;
 }
 
@@ -236,11 +271,15 @@ TEST_P(EverySet, IsNormalisedAndOrdered) {
   EXPECT_NEAR(set.active(1.0).value, 1.0, 0.02);  // the points of Lloyd & Besier peak at 1.045
   EXPECT_NEAR(set.velocity(0.0, 1.0).value, 1.0, 1e-12);
   EXPECT_NEAR(set.tendon(0.0).value, 0.0, 1e-15);
-  const double step = GetParam() == "lloyd_2003_spline" ? 0.1 : 0.01;  // its points are in order, not what lies between
-  for (double v = -1.0; v < 0.99; v += step) EXPECT_LE(set.velocity(v, 1.0).value, set.velocity(v + step, 1.0).value + 1e-12) << v;
-  for (double e = 0.0; e < 0.05; e += 0.001) EXPECT_LE(set.tendon(e).value, set.tendon(e + 0.001).value + 1e-12) << e;
+  const double step =
+      GetParam() == "lloyd_2003_spline" ? 0.1 : 0.01;  // its points are in order, not what lies between
+  for (double v = -1.0; v < 0.99; v += step)
+    EXPECT_LE(set.velocity(v, 1.0).value, set.velocity(v + step, 1.0).value + 1e-12) << v;
+  for (double e = 0.0; e < 0.05; e += 0.001)
+    EXPECT_LE(set.tendon(e).value, set.tendon(e + 0.001).value + 1e-12) << e;
   const CurveDomains d = set.domains();
-  for (const data::Domain& domain : {d.active, d.passive, d.velocity, d.tendon}) EXPECT_LT(domain.lower, domain.upper);
+  for (const data::Domain& domain : {d.active, d.passive, d.velocity, d.tendon})
+    EXPECT_LT(domain.lower, domain.upper);
   EXPECT_TRUE(d.active.contains(1.0));
   EXPECT_TRUE(d.velocity.contains(0.0));
   EXPECT_TRUE(d.tendon.contains(0.0));

@@ -35,7 +35,8 @@ TEST(Differences, BackwardOnesAreExactForParabolas) {
   const BackwardDifference d{0.1};
   std::vector<double> y;
   for (int k = 0; k < 6; ++k) y.push_back(3.0 + 2.0 * 0.1 * k - 5.0 * 0.01 * k * k);
-  for (int k = 2; k < 6; ++k) EXPECT_NEAR(d.alpha(k) * y[k] + d.beta(k, y.data()), 2.0 - 10.0 * 0.1 * k, 1e-12);
+  for (int k = 2; k < 6; ++k)
+    EXPECT_NEAR(d.alpha(k) * y[k] + d.beta(k, y.data()), 2.0 - 10.0 * 0.1 * k, 1e-12);
   EXPECT_NEAR(d.alpha(1) * y[1] + d.beta(1, y.data()), (y[1] - y[0]) / 0.1, 1e-12);
 }
 

@@ -25,9 +25,9 @@ inline const std::vector<ElbowMuscle>& elbow_muscles() {
     return ElbowMuscle{name, p};
   };
   static const std::vector<ElbowMuscle> all = {
-      make("TRIlong", 798.52, 0.134, 0.143, 0.20944),  make("TRIlat", 624.3, 0.1138, 0.098, 0.15708),
-      make("TRImed", 624.3, 0.1138, 0.0908, 0.15708),  make("BIClong", 624.3, 0.1157, 0.2723, 0.0),
-      make("BICshort", 435.56, 0.1321, 0.1923, 0.0),   make("BRA", 987.26, 0.0858, 0.0535, 0.0),
+      make("TRIlong", 798.52, 0.134, 0.143, 0.20944), make("TRIlat", 624.3, 0.1138, 0.098, 0.15708),
+      make("TRImed", 624.3, 0.1138, 0.0908, 0.15708), make("BIClong", 624.3, 0.1157, 0.2723, 0.0),
+      make("BICshort", 435.56, 0.1321, 0.1923, 0.0),  make("BRA", 987.26, 0.0858, 0.0535, 0.0),
       make("BRD", 261.33, 0.1726, 0.133, 0.0)};
   return all;
 }
@@ -57,7 +57,8 @@ struct ElbowReference {
     hill::MuscleTrace out;
     for (const ElbowMuscle& m : elbow_muscles()) {
       const hill::MuscleTendon muscle(m.name, m.parameters, options);
-      hill::forward(muscle, {kRate, length.at(m.name), {}, arm.at(m.name)}, activation.at(m.name), scratch, out);
+      hill::forward(muscle, {kRate, length.at(m.name), {}, arm.at(m.name)}, activation.at(m.name), scratch,
+                    out);
       for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += out.moment_N_m[k];
     }
     return sum;
@@ -65,7 +66,8 @@ struct ElbowReference {
 };
 
 /// Largest |a - b| over [from, end).
-inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b, std::size_t from = 0) {
+inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b,
+                                 std::size_t from = 0) {
   double worst = 0.0;
   for (std::size_t k = from; k < a.size(); ++k) worst = std::max(worst, std::abs(a[k] - b[k]));
   return worst;

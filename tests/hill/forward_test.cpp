@@ -17,7 +17,10 @@ MuscleTrace run(const MuscleTendon& muscle, const Swing& s, bool with_rate = tru
   MuscleScratch scratch;
   MuscleTrace out;
   out.parts = parts;
-  forward(muscle, {s.rate_hz, s.length, with_rate ? std::span<const double>(s.velocity) : std::span<const double>(), s.arm}, s.activation, scratch, out);
+  forward(muscle,
+          {s.rate_hz, s.length, with_rate ? std::span<const double>(s.velocity) : std::span<const double>(),
+           s.arm},
+          s.activation, scratch, out);
   return out;
 }
 
@@ -32,7 +35,8 @@ class EverySetForward : public ::testing::TestWithParam<std::string> {
     return o;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Forward, EverySetForward, ::testing::ValuesIn(CurveSet::names()), [](const auto& set) { return set.param; });
+INSTANTIATE_TEST_SUITE_P(Forward, EverySetForward, ::testing::ValuesIn(CurveSet::names()),
+                         [](const auto& set) { return set.param; });
 
 TEST_P(EverySetForward, RigidForceIsTheFormula) {
   const data::MuscleParameters p = triceps();
@@ -41,10 +45,14 @@ TEST_P(EverySetForward, RigidForceIsTheFormula) {
   const MuscleTrace out = run(muscle, s, true, true);
   const CurveSet& c = muscle.options().curves;
   for (std::size_t k = 0; k < s.length.size(); ++k) {
-    const double z = s.length[k] - p.tendon_slack_length_m, h = p.optimal_fibre_length_m * std::sin(p.pennation_at_optimal_rad);
-    const double l = std::hypot(z, h), phi = std::asin(h / l), v = s.velocity[k] * std::cos(phi), a = s.activation[k];
-    const double vn = v / (p.max_contraction_velocity * p.optimal_fibre_length_m), x = l / p.optimal_fibre_length_m;
-    const double fibre = a * c.active(x / (1.0 + 0.15 * (1.0 - a))).value * c.velocity(vn, a).value + c.passive(x).value + p.fibre_damping * vn;
+    const double z = s.length[k] - p.tendon_slack_length_m,
+                 h = p.optimal_fibre_length_m * std::sin(p.pennation_at_optimal_rad);
+    const double l = std::hypot(z, h), phi = std::asin(h / l), v = s.velocity[k] * std::cos(phi),
+                 a = s.activation[k];
+    const double vn = v / (p.max_contraction_velocity * p.optimal_fibre_length_m),
+                 x = l / p.optimal_fibre_length_m;
+    const double fibre = a * c.active(x / (1.0 + 0.15 * (1.0 - a))).value * c.velocity(vn, a).value +
+                         c.passive(x).value + p.fibre_damping * vn;
     EXPECT_NEAR(out.force_N[k], p.max_isometric_force_N * p.strength * fibre * std::cos(phi), 1e-9);
     EXPECT_NEAR(out.moment_N_m[k], s.arm[k] * out.force_N[k], 1e-12);
     EXPECT_NEAR(out.fibre_length_m[k], l, 1e-15);
@@ -66,11 +74,14 @@ TEST_P(EverySetForward, ElasticForceIsInEquilibrium) {
     const double S = p.max_isometric_force_N * p.strength;
     const double damping = velocity == FibreVelocity::none ? 0.0 : p.fibre_damping;
     for (std::size_t k = 0; k < s.length.size(); ++k) {
-      const double l = out.fibre_length_m[k], h = p.optimal_fibre_length_m * std::sin(p.pennation_at_optimal_rad), a = s.activation[k];
+      const double l = out.fibre_length_m[k],
+                   h = p.optimal_fibre_length_m * std::sin(p.pennation_at_optimal_rad), a = s.activation[k];
       const double cosine = std::sqrt(1.0 - h * h / (l * l));
-      const double vn = out.fibre_velocity_m_s[k] / (p.max_contraction_velocity * p.optimal_fibre_length_m), x = l / p.optimal_fibre_length_m;
+      const double vn = out.fibre_velocity_m_s[k] / (p.max_contraction_velocity * p.optimal_fibre_length_m),
+                   x = l / p.optimal_fibre_length_m;
       const double fv = velocity == FibreVelocity::none ? 1.0 : c.velocity(vn, a).value;
-      const double fibre = a * c.active(x / (1.0 + 0.15 * (1.0 - a))).value * fv + c.passive(x).value + damping * vn;
+      const double fibre =
+          a * c.active(x / (1.0 + 0.15 * (1.0 - a))).value * fv + c.passive(x).value + damping * vn;
       EXPECT_NEAR(out.force_N[k], S * fibre * cosine, 1e-6 * S) << k;
       const double strain = (s.length[k] - l * cosine) / p.tendon_slack_length_m - 1.0;
       EXPECT_NEAR(out.force_N[k], S * c.tendon(strain).value, 1e-9 * S) << k;
@@ -89,7 +100,8 @@ TEST(Forward, AStiffTendonIsTheRigidOne) {
   const MuscleTrace rigid = run(MuscleTendon("TRI", triceps(), o), s);
   o.tendon = TendonKind::elastic;
   const MuscleTrace elastic = run(MuscleTendon("TRI", triceps(), o), s);
-  for (std::size_t k = 4; k < s.length.size(); ++k) EXPECT_NEAR(elastic.force_N[k], rigid.force_N[k], 1e-3 * triceps().max_isometric_force_N) << k;
+  for (std::size_t k = 4; k < s.length.size(); ++k)
+    EXPECT_NEAR(elastic.force_N[k], rigid.force_N[k], 1e-3 * triceps().max_isometric_force_N) << k;
 }
 
 TEST(Forward, RigidVelocityByDifferencesConvergesWithItsOrder) {
@@ -102,7 +114,8 @@ TEST(Forward, RigidVelocityByDifferencesConvergesWithItsOrder) {
       const Swing s(rate, n);
       const MuscleTrace given = run(muscle, s), differenced = run(muscle, s, false);
       double worst = 0.0;
-      for (std::size_t k = 2; k < n; ++k) worst = std::max(worst, std::abs(given.fibre_velocity_m_s[k] - differenced.fibre_velocity_m_s[k]));
+      for (std::size_t k = 2; k < n; ++k)
+        worst = std::max(worst, std::abs(given.fibre_velocity_m_s[k] - differenced.fibre_velocity_m_s[k]));
       return worst;
     };
     EXPECT_NEAR(std::log2(error(100.0, 200) / error(200.0, 400)), order, 0.15) << to_string(kind);
@@ -124,7 +137,8 @@ TEST(Forward, ElasticChainsConvergeToTheDifferentialEquationWithTheirOrder) {
       const MuscleTrace coarse = run(muscle, Swing(3200.0 / static_cast<double>(every), n));
       double worst = 0.0;
       // After the start has died away, and before the one-sided differences at the end.
-      for (std::size_t k = n / 2; k + 8 < n; ++k) worst = std::max(worst, std::abs(coarse.force_N[k] - fine.force_N[k * every]));
+      for (std::size_t k = n / 2; k + 8 < n; ++k)
+        worst = std::max(worst, std::abs(coarse.force_N[k] - fine.force_N[k * every]));
       return worst;
     };
     const double observed = std::log2(error(16) / error(8));
@@ -205,7 +219,10 @@ TEST(Forward, EquilibriumIsFoundOverTheWholeRangeOfLengthAndActivation) {
         const MuscleTrace out = run(muscle, s);
         EXPECT_TRUE(std::isfinite(out.force_N[4]));
         EXPECT_GE(out.force_N[4], 0.0);
-        EXPECT_LE(out.fibre_length_m[4] * std::sqrt(1.0 - std::pow(p.optimal_fibre_length_m * std::sin(p.pennation_at_optimal_rad) / out.fibre_length_m[4], 2)),
+        EXPECT_LE(out.fibre_length_m[4] * std::sqrt(1.0 - std::pow(p.optimal_fibre_length_m *
+                                                                       std::sin(p.pennation_at_optimal_rad) /
+                                                                       out.fibre_length_m[4],
+                                                                   2)),
                   l * p.optimal_fibre_length_m * (1.0 + 1e-9));
       }
     }
@@ -239,7 +256,8 @@ TEST(Forward, WrongInputsAreNamed) {
   s.activation.pop_back();
   expect_input_error(muscle, s, "size-mismatch", "`activation` of muscle `TRI` has 9 frames, its path 10");
   s = Swing(200.0, 4);
-  expect_input_error(muscle, s, "trial-too-short", "the path of muscle `TRI` has 4 frames; the fibre velocity needs at least 5");
+  expect_input_error(muscle, s, "trial-too-short",
+                     "the path of muscle `TRI` has 4 frames; the fibre velocity needs at least 5");
   s = Swing(200.0, 10);
   s.rate_hz = 0.0;
   expect_input_error(muscle, s, "bad-rate", "the path of muscle `TRI` has a rate of 0 Hz");
@@ -247,8 +265,9 @@ TEST(Forward, WrongInputsAreNamed) {
 
 TEST(Forward, ParametersGoByTheirNames) {
   data::MuscleParameters p = triceps();
-  for (const char* name : {"max_isometric_force_N", "strength", "optimal_fibre_length_m", "tendon_slack_length_m", "pennation_at_optimal_rad",
-                           "max_contraction_velocity", "fibre_damping"}) {
+  for (const char* name :
+       {"max_isometric_force_N", "strength", "optimal_fibre_length_m", "tendon_slack_length_m",
+        "pennation_at_optimal_rad", "max_contraction_velocity", "fibre_damping"}) {
     const MuscleParameter which = parse_muscle_parameter(name);
     EXPECT_EQ(to_string(which), name);
     set(p, which, 0.25);

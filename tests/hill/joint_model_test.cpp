@@ -43,8 +43,9 @@ JointModel model(const std::string& set, TendonKind tendon) {
   o.tendon = tendon;
   o.optimal_length_coupling = 0.15;
   if (tendon == TendonKind::elastic) o.velocity = FibreVelocity::none;
-  return JointModel("elbow", {{MuscleTendon("TRI", tests::triceps(), o), path("TRI", {0.18, 0.021, 0.0015})},
-                              {MuscleTendon("BRA", brachialis(), o), path("BRA", {0.156, -0.013, -0.006, 0.0013})}});
+  return JointModel("elbow",
+                    {{MuscleTendon("TRI", tests::triceps(), o), path("TRI", {0.18, 0.021, 0.0015})},
+                     {MuscleTendon("BRA", brachialis(), o), path("BRA", {0.156, -0.013, -0.006, 0.0013})}});
 }
 
 struct Question {
@@ -64,7 +65,8 @@ double moment(const JointModel& m, const Question& x) {
 }
 
 class JointModelOfEverySet : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Hill, JointModelOfEverySet, ::testing::ValuesIn(CurveSet::names()), [](const auto& set) { return set.param; });
+INSTANTIATE_TEST_SUITE_P(Hill, JointModelOfEverySet, ::testing::ValuesIn(CurveSet::names()),
+                         [](const auto& set) { return set.param; });
 
 TEST_P(JointModelOfEverySet, GivesTheNumbersOfTheBatchChain) {
   for (const auto tendon : {TendonKind::rigid, TendonKind::elastic}) {
@@ -105,9 +107,12 @@ TEST_P(JointModelOfEverySet, GivesExactDerivatives) {
       const Question x = question(q, tendon == TendonKind::rigid ? 0.7 : 0.0, 0.313, 0.427);
       limb::Evaluation out;
       m.evaluate(x.q, x.qdot, x.a, x.state, out);
-      const double by_q = tests::slope_of([&](double t) { return moment(m, question(t, x.qdot[0], x.a[0], x.a[1])); }, q, 1e-5);
-      const double by_tri = tests::slope_of([&](double t) { return moment(m, question(q, x.qdot[0], t, x.a[1])); }, x.a[0], 1e-5);
-      const double by_bra = tests::slope_of([&](double t) { return moment(m, question(q, x.qdot[0], x.a[0], t)); }, x.a[1], 1e-5);
+      const double by_q = tests::slope_of(
+          [&](double t) { return moment(m, question(t, x.qdot[0], x.a[0], x.a[1])); }, q, 1e-5);
+      const double by_tri = tests::slope_of(
+          [&](double t) { return moment(m, question(q, x.qdot[0], t, x.a[1])); }, x.a[0], 1e-5);
+      const double by_bra = tests::slope_of(
+          [&](double t) { return moment(m, question(q, x.qdot[0], x.a[0], t)); }, x.a[1], 1e-5);
       EXPECT_NEAR(out.dmoment_dq(0, 0), by_q, 2e-6 * (1.0 + std::abs(by_q))) << q;
       EXPECT_NEAR(out.dmoment_dactivation(0, 0), by_tri, 2e-6 * (1.0 + std::abs(by_tri))) << q;
       EXPECT_NEAR(out.dmoment_dactivation(0, 1), by_bra, 2e-6 * (1.0 + std::abs(by_bra))) << q;
@@ -124,7 +129,8 @@ TEST(JointModel, AtZeroActivationTheForceStillRisesWithIt) {
   const Question x = question(1.6, 0.0, 0.0, 0.0);  // both fibres are short: no passive force in BRA
   m.evaluate(x.q, x.qdot, x.a, x.state, out);
   EXPECT_EQ(out.force[1], 0.0);
-  const double slope = (moment(m, question(1.6, 0.0, 0.0, 1e-7)) - moment(m, question(1.6, 0.0, 0.0, 0.0))) / 1e-7;
+  const double slope =
+      (moment(m, question(1.6, 0.0, 0.0, 1e-7)) - moment(m, question(1.6, 0.0, 0.0, 0.0))) / 1e-7;
   EXPECT_NEAR(out.dmoment_dactivation(0, 1), slope, 2e-2 * std::abs(slope));
 }
 
@@ -158,7 +164,8 @@ TEST(JointModel, MistakesOfTheSetAreAllNamed) {
   } catch (const data::InputError& e) {
     std::vector<std::string> codes;
     for (const auto& d : e.diagnostics()) codes.push_back(d.code);
-    EXPECT_THAT(codes, ::testing::ElementsAre("wrong-coordinate", "duplicate-muscle", "wrong-coordinate", "mixed-tendons", "no-joint-compatibility"));
+    EXPECT_THAT(codes, ::testing::ElementsAre("wrong-coordinate", "duplicate-muscle", "wrong-coordinate",
+                                              "mixed-tendons", "no-joint-compatibility"));
   }
 }
 

@@ -57,11 +57,13 @@ TEST(MuscleTendon, AnElasticTendonNeedsALength) {
 }
 
 TEST(MuscleModelOptions, ChoicesGoToTextAndBack) {
-  for (const auto kind : {TendonKind::rigid, TendonKind::elastic}) EXPECT_EQ(parse_tendon(to_string(kind)), kind);
+  for (const auto kind : {TendonKind::rigid, TendonKind::elastic})
+    EXPECT_EQ(parse_tendon(to_string(kind)), kind);
   for (const auto kind : {FibreVelocity::zero_lag, FibreVelocity::causal, FibreVelocity::none}) {
     EXPECT_EQ(parse_fibre_velocity(to_string(kind)), kind);
   }
-  for (const auto kind : {Compatibility::none, Compatibility::ceinms}) EXPECT_EQ(parse_compatibility(to_string(kind)), kind);
+  for (const auto kind : {Compatibility::none, Compatibility::ceinms})
+    EXPECT_EQ(parse_compatibility(to_string(kind)), kind);
   try {
     parse_tendon("elastik");
     FAIL();
