@@ -18,15 +18,19 @@ namespace detail {
 double DomainReader::check(const std::string& key, bool strictly, double value) {
   if (std::isnan(value)) return value;  // missing or of the wrong type: reported already
   if (strictly ? value > 0.0 : value >= 0.0) return value;
-  table.error("out-of-range", fmt::format("`{}` of {} must be {}, not {}", key, owner, strictly ? "greater than 0" : "0 or greater", value),
+  table.error("out-of-range",
+              fmt::format("`{}` of {} must be {}, not {}", key, owner,
+                          strictly ? "greater than 0" : "0 or greater", value),
               key);
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-void check_unique(const std::string& kind, const std::string& name, std::vector<std::string>& seen, TomlTable& table) {
+void check_unique(const std::string& kind, const std::string& name, std::vector<std::string>& seen,
+                  TomlTable& table) {
   if (name.empty()) return;
   if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
-    table.error("duplicate-" + kind, fmt::format("{} `{}` is defined twice", kind, name), "name", "names are unique in a scene");
+    table.error("duplicate-" + kind, fmt::format("{} `{}` is defined twice", kind, name), "name",
+                "names are unique in a scene");
   }
   seen.push_back(name);
 }
@@ -59,7 +63,8 @@ void read_header(TomlTable& root, SceneDraft& draft) {
   DomainReader domain{*table, "the scene"};
   scene.title = table->require_text("title");
   if (!table->has("wanted")) {
-    table->error("missing-key", "`wanted` is missing in `scene`", {}, "name the wanted quantities, e.g. [\"elbow_flexion.moment\"]");
+    table->error("missing-key", "`wanted` is missing in `scene`", {},
+                 "name the wanted quantities, e.g. [\"elbow_flexion.moment\"]");
   }
   scene.wanted = table->texts("wanted").value_or(std::vector<std::string>{});
   if (table->has("wanted") && scene.wanted.empty()) {
@@ -85,10 +90,13 @@ void read_coordinates(TomlTable& root, SceneDraft& draft) {
     c.name = table.require_text("name");
     DomainReader domain{table, fmt::format("coordinate `{}`", c.name)};
     check_unique("coordinate", c.name, seen, table);
-    if (!table.has("range_deg")) table.error("missing-key", fmt::format("`range_deg` is missing in coordinate `{}`", c.name));
+    if (!table.has("range_deg"))
+      table.error("missing-key", fmt::format("`range_deg` is missing in coordinate `{}`", c.name));
     if (const auto range = table.numbers("range_deg")) {
       if (range->size() != 2 || !((*range)[0] < (*range)[1])) {
-        table.error("out-of-range", fmt::format("`range_deg` of coordinate `{}` must be two increasing angles", c.name), "range_deg");
+        table.error("out-of-range",
+                    fmt::format("`range_deg` of coordinate `{}` must be two increasing angles", c.name),
+                    "range_deg");
       } else {
         c.lower_rad = (*range)[0] * radian;
         c.upper_rad = (*range)[1] * radian;
@@ -101,11 +109,15 @@ void read_coordinates(TomlTable& root, SceneDraft& draft) {
       // A parent stands before its child: then a chain cannot close on itself.
       const auto known = names_of(draft.scene.coordinates);
       if (std::find(known.begin(), known.end(), *parent) == known.end()) {
-        table.error("unknown-coordinate", fmt::format("coordinate `{}` has the parent `{}`, which is not defined before it", c.name, *parent),
+        table.error("unknown-coordinate",
+                    fmt::format("coordinate `{}` has the parent `{}`, which is not defined before it", c.name,
+                                *parent),
                     "parent", data::suggest(*parent, known));
       }
     } else if (table.number("distance_from_parent_m")) {
-      table.error("missing-key", fmt::format("`distance_from_parent_m` of coordinate `{}` needs a `parent`", c.name), "distance_from_parent_m");
+      table.error("missing-key",
+                  fmt::format("`distance_from_parent_m` of coordinate `{}` needs a `parent`", c.name),
+                  "distance_from_parent_m");
     }
     table.finish();
     draft.scene.coordinates.push_back(std::move(c));
@@ -119,13 +131,15 @@ std::string coordinate_of(TomlTable& table, const std::string& owner, const Scen
   if (!name) {
     if (known.size() == 1) return known.front();
     if (!table.has("coordinate")) {
-      table.error("missing-key", fmt::format("`coordinate` is missing in {}", owner), {}, data::suggest("", known));
+      table.error("missing-key", fmt::format("`coordinate` is missing in {}", owner), {},
+                  data::suggest("", known));
     }
     return {};
   }
   if (std::find(known.begin(), known.end(), *name) == known.end()) {
-    table.error("unknown-coordinate", fmt::format("{} refers to coordinate `{}`, which the scene does not have", owner, *name), "coordinate",
-                data::suggest(*name, known));
+    table.error("unknown-coordinate",
+                fmt::format("{} refers to coordinate `{}`, which the scene does not have", owner, *name),
+                "coordinate", data::suggest(*name, known));
   }
   return *name;
 }
@@ -164,14 +178,16 @@ void read_segments(TomlTable& root, SceneDraft& draft) {
     if (mass == "mass_fraction_of_body") {
       s.body_mass_fraction = domain.positive("mass_fraction_of_body");
       if (!(draft.scene.body_mass_kg > 0.0)) {
-        table.error("missing-key", fmt::format("{} takes its mass from the body mass, which [scene] does not give", owner),
+        table.error("missing-key",
+                    fmt::format("{} takes its mass from the body mass, which [scene] does not give", owner),
                     "mass_fraction_of_body", "add `body_mass_kg` and `body_mass_source` to [scene]");
       }
       s.mass_kg = s.body_mass_fraction * draft.scene.body_mass_kg;
     }
     s.mass_relative_sd = domain.non_negative("mass_relative_sd", 0.0);
 
-    // Fractions are of the segment's own length, measured from its proximal end, which lies `offset_m` from the joint.
+    // Fractions are of the segment's own length, measured from its proximal end, which lies `offset_m` from
+    // the joint.
     const double offset = domain.non_negative("offset_m", 0.0);
     const double length = table.has("length_m") ? domain.positive("length_m") : not_given;
     const auto of_length = [&](const std::string& key) {
@@ -183,7 +199,8 @@ void read_segments(TomlTable& root, SceneDraft& draft) {
     };
     const std::string centre = exactly_one(table, owner, {"centre_of_mass_m", "centre_of_mass_fraction"});
     if (centre == "centre_of_mass_m") s.centre_of_mass_m = offset + domain.positive("centre_of_mass_m");
-    if (centre == "centre_of_mass_fraction") s.centre_of_mass_m = offset + of_length("centre_of_mass_fraction");
+    if (centre == "centre_of_mass_fraction")
+      s.centre_of_mass_m = offset + of_length("centre_of_mass_fraction");
     s.centre_of_mass_sd_m = domain.non_negative("centre_of_mass_sd_m", 0.0);
 
     const std::string inertia =
@@ -211,8 +228,9 @@ void read_loads(TomlTable& root, SceneDraft& draft) {
     l.source = table.require_text("source");
     if (table.has("mass_kg") == table.has("mass_condition")) {
       table.error(table.has("mass_kg") ? "contradiction" : "missing-key",
-                  fmt::format("{} {} `mass_kg` or `mass_condition`", owner, table.has("mass_kg") ? "takes only one of" : "needs"), {},
-                  "a fixed mass, or the trial condition it is read from");
+                  fmt::format("{} {} `mass_kg` or `mass_condition`", owner,
+                              table.has("mass_kg") ? "takes only one of" : "needs"),
+                  {}, "a fixed mass, or the trial condition it is read from");
       table.number("mass_kg");
       table.text("mass_condition");
     } else if (table.has("mass_kg")) {
@@ -236,7 +254,8 @@ void check_wanted(TomlTable& root, SceneDraft& draft) {
     for (const char* what : {"moment", "angle"}) known.push_back(fmt::format("{}.{}", c.name, what));
   }
   for (const auto& m : scene.muscles) {
-    for (const char* what : {"force", "moment", "activation"}) known.push_back(fmt::format("{}.{}", m.name, what));
+    for (const char* what : {"force", "moment", "activation"})
+      known.push_back(fmt::format("{}.{}", m.name, what));
   }
   const TomlNode* header = root.node().find("scene");
   const TomlNode* list = header ? header->find("wanted") : nullptr;
@@ -244,8 +263,9 @@ void check_wanted(TomlTable& root, SceneDraft& draft) {
   for (std::size_t i = 0; i < scene.wanted.size(); ++i) {
     const std::string& wanted = scene.wanted[i];
     if (std::find(known.begin(), known.end(), wanted) != known.end()) continue;
-    data::Diagnostic d{data::Severity::error, "unknown-quantity", fmt::format("`{}` is not a quantity this scene can give", wanted),
-                       std::nullopt, data::suggest(wanted, known)};
+    data::Diagnostic d{data::Severity::error, "unknown-quantity",
+                       fmt::format("`{}` is not a quantity this scene can give", wanted), std::nullopt,
+                       data::suggest(wanted, known)};
     if (list) d.where = i < list->items.size() ? list->items[i].where : list->where;
     draft.diagnostics.push_back(std::move(d));
   }
@@ -253,8 +273,8 @@ void check_wanted(TomlTable& root, SceneDraft& draft) {
 
 }  // namespace
 
-data::Scene parse_scene(const std::string& text, const std::string& file_name, const std::filesystem::path& folder,
-                        std::span<const std::string> channels) {
+data::Scene parse_scene(const std::string& text, const std::string& file_name,
+                        const std::filesystem::path& folder, std::span<const std::string> channels) {
   const TomlNode tree = parse_toml(text, file_name);
   SceneDraft draft;
   draft.folder = folder;
@@ -277,7 +297,8 @@ data::Scene read_scene(const std::filesystem::path& file, std::span<const std::s
   std::ifstream stream(file, std::ios::binary);
   std::error_code ignored;
   if (!stream || std::filesystem::is_directory(file, ignored)) {
-    throw InputError("missing-file", fmt::format("cannot read the scene `{}`", file.string()), "check the path");
+    throw InputError("missing-file", fmt::format("cannot read the scene `{}`", file.string()),
+                     "check the path");
   }
   std::ostringstream text;
   text << stream.rdbuf();

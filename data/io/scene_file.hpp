@@ -19,11 +19,11 @@ namespace brachium::io {
 data::Scene read_scene(const std::filesystem::path& file, std::span<const std::string> channels = {});
 
 /// The same from a text; `file_name` is for messages, `folder` is what csv files are relative to.
-data::Scene parse_scene(const std::string& text, const std::string& file_name, const std::filesystem::path& folder,
-                        std::span<const std::string> channels = {});
+data::Scene parse_scene(const std::string& text, const std::string& file_name,
+                        const std::filesystem::path& folder, std::span<const std::string> channels = {});
 
-/// The resolved scene as a tree and as TOML: fractions as values, csv tables inline. Reading it again gives the
-/// same scene (notes of what was left out excepted: it is no longer there).
+/// The resolved scene as a tree and as TOML: fractions as values, csv tables inline. Reading it again gives
+/// the same scene (notes of what was left out excepted: it is no longer there).
 TomlNode scene_tree(const data::Scene& scene);
 std::string write_scene(const data::Scene& scene);
 

@@ -28,7 +28,8 @@ data::MuscleParameters read_parameters(TomlTable& table, const std::string& owne
   p.tendon_slack_length_m = domain.non_negative("tendon_slack_length_m");
   const double pennation = domain.non_negative("pennation_at_optimal_deg", 0.0);
   if (pennation >= 90.0) {
-    table.error("out-of-range", fmt::format("`pennation_at_optimal_deg` of {} must be below 90, not {}", owner, pennation),
+    table.error("out-of-range",
+                fmt::format("`pennation_at_optimal_deg` of {} must be below 90, not {}", owner, pennation),
                 "pennation_at_optimal_deg");
   }
   p.pennation_at_optimal_rad = pennation * radian;
@@ -48,7 +49,9 @@ data::ActivationParameters read_activation(TomlTable& table, const std::string& 
   a.shape = table.number("shape").value_or(a.shape);
   // Exponential law -3 < A <= 0 (0: linear), piecewise law 0 < A <= 0.12; which one it is, the stage says.
   if (!(a.shape > -3.0 && a.shape <= 0.12)) {
-    table.error("out-of-range", fmt::format("`shape` of {} must be above -3 and at most 0.12, not {}", owner, a.shape), "shape");
+    table.error("out-of-range",
+                fmt::format("`shape` of {} must be above -3 and at most 0.12, not {}", owner, a.shape),
+                "shape");
   }
   table.finish();
   return a;
@@ -58,7 +61,7 @@ data::ActivationParameters read_activation(TomlTable& table, const std::string& 
 struct CsvColumn {
   const char* name;
   double to_si;
-  std::vector<double> PathGeometry::* values;
+  std::vector<double> PathGeometry::*values;
 };
 
 constexpr double milli = 1e-3;
@@ -87,8 +90,10 @@ std::vector<std::string> cells_of(std::string line) {
   return cells;
 }
 
-// A comma-separated table with one header row of the names above; lines that are empty or start with # are passed over.
-void read_csv(const std::filesystem::path& file, TomlTable& table, PathGeometry& geometry, std::vector<Diagnostic>& diagnostics) {
+// A comma-separated table with one header row of the names above; lines that are empty or start with # are
+// passed over.
+void read_csv(const std::filesystem::path& file, TomlTable& table, PathGeometry& geometry,
+              std::vector<Diagnostic>& diagnostics) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code ignored;
   if (!stream || std::filesystem::is_directory(file, ignored)) {
@@ -97,7 +102,8 @@ void read_csv(const std::filesystem::path& file, TomlTable& table, PathGeometry&
     return;
   }
   const auto mistake = [&](const char* code, int line, std::string message, std::string help = {}) {
-    diagnostics.push_back({Severity::error, code, std::move(message), data::SourceSpan{file.string(), line, 0, 1, {}}, std::move(help)});
+    diagnostics.push_back({Severity::error, code, std::move(message),
+                           data::SourceSpan{file.string(), line, 0, 1, {}}, std::move(help)});
   };
   std::vector<const CsvColumn*> columns;
   std::string text;
@@ -111,13 +117,15 @@ void read_csv(const std::filesystem::path& file, TomlTable& table, PathGeometry&
       for (const std::string& cell : cells) {
         const auto at = std::find(known.begin(), known.end(), cell);
         if (at == known.end()) {
-          mistake("unknown-column", line, fmt::format("`{}` is not a column of a geometry table", cell), data::suggest(cell, known));
+          mistake("unknown-column", line, fmt::format("`{}` is not a column of a geometry table", cell),
+                  data::suggest(cell, known));
           return;
         }
         const CsvColumn* column = &csv_columns[static_cast<std::size_t>(at - known.begin())];
         for (const CsvColumn* other : columns) {
           if (other->values == column->values) {
-            mistake("contradiction", line, fmt::format("columns `{}` and `{}` give the same quantity", other->name, column->name));
+            mistake("contradiction", line,
+                    fmt::format("columns `{}` and `{}` give the same quantity", other->name, column->name));
             return;
           }
         }
@@ -126,7 +134,8 @@ void read_csv(const std::filesystem::path& file, TomlTable& table, PathGeometry&
       continue;
     }
     if (cells.size() != columns.size()) {
-      mistake("truncated", line, fmt::format("a row of {} cells under {} columns", cells.size(), columns.size()));
+      mistake("truncated", line,
+              fmt::format("a row of {} cells under {} columns", cells.size(), columns.size()));
       return;
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -134,7 +143,8 @@ void read_csv(const std::filesystem::path& file, TomlTable& table, PathGeometry&
       const char* end = cells[c].data() + cells[c].size();
       const auto [stop, status] = std::from_chars(cells[c].data(), end, value);
       if (status != std::errc{} || stop != end || !std::isfinite(value)) {
-        mistake("not-a-number", line, fmt::format("`{}` in column `{}` is not a finite number", cells[c], columns[c]->name));
+        mistake("not-a-number", line,
+                fmt::format("`{}` in column `{}` is not a finite number", cells[c], columns[c]->name));
         return;
       }
       (geometry.*(columns[c]->values)).push_back(value * columns[c]->to_si);
@@ -154,8 +164,9 @@ PathGeometry read_geometry(TomlTable& table, const std::string& owner, SceneDraf
   if (const auto name = table.text("coordinate")) {
     g.coordinate = *name;
     if (std::find(known.begin(), known.end(), *name) == known.end()) {
-      table.error("unknown-coordinate", fmt::format("{} crosses coordinate `{}`, which the scene does not have", owner, *name), "coordinate",
-                  data::suggest(*name, known));
+      table.error("unknown-coordinate",
+                  fmt::format("{} crosses coordinate `{}`, which the scene does not have", owner, *name),
+                  "coordinate", data::suggest(*name, known));
     }
   } else if (known.size() == 1) {
     g.coordinate = known.front();
@@ -168,7 +179,8 @@ PathGeometry read_geometry(TomlTable& table, const std::string& owner, SceneDraf
   if (polynomial + tabulated + csv != 1) {
     table.error(polynomial + tabulated + csv == 0 ? "missing-key" : "contradiction",
                 fmt::format("the geometry of {} must be given in one way", owner), {},
-                "`length_polynomial_m` and `moment_arm_polynomial_m` (powers of rad), or `angle_deg` with `length_m` and "
+                "`length_polynomial_m` and `moment_arm_polynomial_m` (powers of rad), or `angle_deg` with "
+                "`length_m` and "
                 "`moment_arm_m`, or `csv`");
   }
   if (const auto length = table.numbers("length_polynomial_m")) g.length_m = *length;
@@ -179,7 +191,8 @@ PathGeometry read_geometry(TomlTable& table, const std::string& owner, SceneDraf
   const auto file = table.text("csv");
   g.kind = polynomial ? PathGeometry::Kind::polynomial : PathGeometry::Kind::table;
   if (tabulated && !polynomial) {
-    if (!table.has("angle_deg")) table.error("missing-key", fmt::format("the geometry table of {} needs `angle_deg`", owner));
+    if (!table.has("angle_deg"))
+      table.error("missing-key", fmt::format("the geometry table of {} needs `angle_deg`", owner));
     for (const double a : angle.value_or(std::vector<double>{})) g.angle_rad.push_back(a * radian);
     g.length_m = length.value_or(std::vector<double>{});
     g.moment_arm_m = arm.value_or(std::vector<double>{});
@@ -203,7 +216,8 @@ data::MuscleDrive read_drive(TomlTable& table, const std::string& owner) {
     for (const auto& [channel, node] : channels->node().members) {
       if (const auto weight = channels->number(channel)) d.channels[channel] = *weight;
     }
-    if (channels->node().members.empty()) table.error("missing-key", fmt::format("the drive of {} names no channel", owner), "channels");
+    if (channels->node().members.empty())
+      table.error("missing-key", fmt::format("the drive of {} names no channel", owner), "channels");
   }
   for (const char* rule : {"same_as", "mean_of"}) {
     if (const auto muscles = table.texts(rule)) {
@@ -217,13 +231,17 @@ data::MuscleDrive read_drive(TomlTable& table, const std::string& owner) {
     ++ways;
     d.kind = data::MuscleDrive::Kind::undriven;
     d.reason = *reason;
-    if (reason->empty()) table.error("out-of-range", fmt::format("`none` of {} must say why the muscle has no drive", owner), "none");
+    if (reason->empty())
+      table.error("out-of-range", fmt::format("`none` of {} must say why the muscle has no drive", owner),
+                  "none");
   }
   table.finish();
   const bool any = table.has("channels") || table.has("same_as") || table.has("mean_of") || table.has("none");
   if (ways > 1 || !any) {
-    table.error(ways > 1 ? "contradiction" : "missing-key", fmt::format("the drive of {} must be given in one way", owner), {},
-                "`channels = { name = weight }`, `same_as = \"MUSCLE\"`, `mean_of = [...]`, or `none = \"why\"`");
+    table.error(
+        ways > 1 ? "contradiction" : "missing-key",
+        fmt::format("the drive of {} must be given in one way", owner), {},
+        "`channels = { name = weight }`, `same_as = \"MUSCLE\"`, `mean_of = [...]`, or `none = \"why\"`");
   }
   return d;
 }
@@ -259,7 +277,8 @@ void read_muscles(TomlTable& root, SceneDraft& draft, std::span<const std::strin
     m.source = table.require_text("source");
     const auto part = [&](const char* key) -> std::optional<TomlTable> {
       auto sub = table.table(key);
-      if (!sub && !table.has(key)) table.error("missing-key", fmt::format("`{}` is missing in {}", key, owner));
+      if (!sub && !table.has(key))
+        table.error("missing-key", fmt::format("`{}` is missing in {}", key, owner));
       if (!sub) return std::nullopt;
       return TomlTable(sub->node(), draft.diagnostics, fmt::format("`{}` of {}", key, owner));
     };
@@ -268,9 +287,11 @@ void read_muscles(TomlTable& root, SceneDraft& draft, std::span<const std::strin
     if (auto g = part("geometry")) {
       const std::size_t before = draft.diagnostics.size();
       m.path = read_geometry(*g, owner, draft);
-      const auto coordinate = std::find_if(draft.scene.coordinates.begin(), draft.scene.coordinates.end(),
-                                           [&](const data::Coordinate& c) { return c.name == m.path.coordinate; });
-      // A geometry that could not be read cannot be checked further; nor one over a range that is itself wrong.
+      const auto coordinate =
+          std::find_if(draft.scene.coordinates.begin(), draft.scene.coordinates.end(),
+                       [&](const data::Coordinate& c) { return c.name == m.path.coordinate; });
+      // A geometry that could not be read cannot be checked further; nor one over a range that is itself
+      // wrong.
       if (draft.diagnostics.size() == before && coordinate != draft.scene.coordinates.end() &&
           coordinate->lower_rad < coordinate->upper_rad) {
         try {
@@ -289,7 +310,8 @@ void read_muscles(TomlTable& root, SceneDraft& draft, std::span<const std::strin
   }
   // Drives refer to each other, so they are checked once all muscles are known.
   const std::vector<std::string> named = limb::named_channels(draft.scene);
-  for (const auto& mistake : limb::drive_mistakes(draft.scene, channels.empty() ? std::span<const std::string>(named) : channels)) {
+  for (const auto& mistake :
+       limb::drive_mistakes(draft.scene, channels.empty() ? std::span<const std::string>(named) : channels)) {
     Diagnostic d = mistake.finding;
     d.where = place_of(tables[mistake.muscle].node(), mistake.item);
     draft.diagnostics.push_back(std::move(d));

@@ -14,17 +14,20 @@ namespace brachium::io::detail {
 /// A scene as it is being read, with all mistakes found so far.
 struct SceneDraft {
   data::Scene scene;
-  std::filesystem::path folder;               ///< csv files are relative to it
+  std::filesystem::path folder;  ///< csv files are relative to it
   std::vector<data::Diagnostic> diagnostics;
 };
 
-/// A number of a named thing that must lie in a domain; NaN (and an error naming thing, key, value and domain) if not.
+/// A number of a named thing that must lie in a domain; NaN (and an error naming thing, key, value and
+/// domain) if not.
 struct DomainReader {
   TomlTable& table;
   std::string owner;  ///< "muscle `BRA`"
 
   double positive(const std::string& key) { return check(key, true, table.require_number(key)); }
-  double positive(const std::string& key, double fallback) { return check(key, true, table.number(key).value_or(fallback)); }
+  double positive(const std::string& key, double fallback) {
+    return check(key, true, table.number(key).value_or(fallback));
+  }
   double non_negative(const std::string& key) { return check(key, false, table.require_number(key)); }
   double non_negative(const std::string& key, double fallback) {
     return check(key, false, table.number(key).value_or(fallback));
@@ -35,7 +38,8 @@ struct DomainReader {
 };
 
 /// Reports a name used twice among things of one kind: "duplicate-muscle", ...
-void check_unique(const std::string& kind, const std::string& name, std::vector<std::string>& seen, TomlTable& table);
+void check_unique(const std::string& kind, const std::string& name, std::vector<std::string>& seen,
+                  TomlTable& table);
 
 /// The [[muscle]] entries: parameters, activation, geometry, drive. `channels` as in read_scene.
 void read_muscles(TomlTable& root, SceneDraft& draft, std::span<const std::string> channels);

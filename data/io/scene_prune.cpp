@@ -51,7 +51,8 @@ Needed needs_of(const data::Scene& scene) {
   Needed needed;
   for (const std::string& wanted : scene.wanted) {
     const std::string name = wanted.substr(0, wanted.rfind('.'));
-    const bool coordinate = std::any_of(scene.coordinates.begin(), scene.coordinates.end(), [&](const auto& c) { return c.name == name; });
+    const bool coordinate = std::any_of(scene.coordinates.begin(), scene.coordinates.end(),
+                                        [&](const auto& c) { return c.name == name; });
     coordinate ? need_coordinate(scene, name, needed) : need_muscle(scene, name, needed);
   }
   // Rules reach further muscles, whose own rules may reach others.
@@ -73,10 +74,12 @@ template <class Items, class Keep>
 void keep_if(Items& items, const char* kind, data::Scene& scene, const Keep& keep) {
   for (const auto& item : items) {
     if (keep(item)) continue;
-    scene.notes.push_back({data::Severity::note, "left-out",
-                           fmt::format("{} `{}` is left out: no wanted quantity ({}) depends on it", kind, item.name,
-                                       fmt::join(scene.wanted, ", ")),
-                           std::nullopt, {}});
+    scene.notes.push_back({data::Severity::note,
+                           "left-out",
+                           fmt::format("{} `{}` is left out: no wanted quantity ({}) depends on it", kind,
+                                       item.name, fmt::join(scene.wanted, ", ")),
+                           std::nullopt,
+                           {}});
   }
   std::erase_if(items, [&](const auto& item) { return !keep(item); });
 }
@@ -89,12 +92,16 @@ void leave_out_unwanted(data::Scene& scene) {
   keep_if(scene.muscles, "muscle", scene, [&](const auto& m) { return needed.muscles.contains(m.name); });
   keep_if(scene.segments, "segment", scene, has_body);
   keep_if(scene.loads, "load", scene, has_body);
-  keep_if(scene.coordinates, "coordinate", scene, [&](const auto& c) { return needed.coordinates.contains(c.name); });
+  keep_if(scene.coordinates, "coordinate", scene,
+          [&](const auto& c) { return needed.coordinates.contains(c.name); });
   for (const auto& m : scene.muscles) {
     if (m.drive.kind != MuscleDrive::Kind::undriven) continue;
-    scene.notes.push_back({data::Severity::note, "undriven-muscle",
-                           fmt::format("muscle `{}` has no drive and is modelled as passive: {}", m.name, m.drive.reason),
-                           std::nullopt, {}});
+    scene.notes.push_back(
+        {data::Severity::note,
+         "undriven-muscle",
+         fmt::format("muscle `{}` has no drive and is modelled as passive: {}", m.name, m.drive.reason),
+         std::nullopt,
+         {}});
   }
 }
 

@@ -10,10 +10,16 @@ namespace brachium::io {
 namespace {
 
 // Twelve digits: so that 165 deg, which passed through radians, is written as 165 again.
-double degrees(double radians) { return std::stod(fmt::format("{:.12g}", radians * 180.0 / std::numbers::pi)); }
+double degrees(double radians) {
+  return std::stod(fmt::format("{:.12g}", radians * 180.0 / std::numbers::pi));
+}
 
-void put(TomlNode& table, const char* key, const std::string& value) { table.member(key) = TomlNode::of(value); }
-void put(TomlNode& table, const char* key, double value) { table.member(key) = TomlNode::of(value); }
+void put(TomlNode& table, const char* key, const std::string& value) {
+  table.member(key) = TomlNode::of(value);
+}
+void put(TomlNode& table, const char* key, double value) {
+  table.member(key) = TomlNode::of(value);
+}
 void put_unless_zero(TomlNode& table, const char* key, double value) {
   if (value != 0.0) put(table, key, value);
 }
@@ -42,7 +48,8 @@ TomlNode segment_node(const data::Segment& s) {
   put(t, "name", s.name);
   put(t, "coordinate", s.coordinate);
   // The fraction is kept where there is one: it ties the segments' uncertainties together.
-  s.body_mass_fraction > 0.0 ? put(t, "mass_fraction_of_body", s.body_mass_fraction) : put(t, "mass_kg", s.mass_kg);
+  s.body_mass_fraction > 0.0 ? put(t, "mass_fraction_of_body", s.body_mass_fraction)
+                             : put(t, "mass_kg", s.mass_kg);
   put_unless_zero(t, "mass_relative_sd", s.mass_relative_sd);
   put(t, "centre_of_mass_m", s.centre_of_mass_m);
   put_unless_zero(t, "centre_of_mass_sd_m", s.centre_of_mass_sd_m);
@@ -73,8 +80,10 @@ TomlNode geometry_node(const data::PathGeometry& g) {
     for (const double q : g.angle_rad) angles.push_back(degrees(q));
     t.member("angle_deg") = TomlNode::of(std::move(angles));
   }
-  if (!g.length_m.empty()) t.member(polynomial ? "length_polynomial_m" : "length_m") = TomlNode::of(g.length_m);
-  if (!g.moment_arm_m.empty()) t.member(polynomial ? "moment_arm_polynomial_m" : "moment_arm_m") = TomlNode::of(g.moment_arm_m);
+  if (!g.length_m.empty())
+    t.member(polynomial ? "length_polynomial_m" : "length_m") = TomlNode::of(g.length_m);
+  if (!g.moment_arm_m.empty())
+    t.member(polynomial ? "moment_arm_polynomial_m" : "moment_arm_m") = TomlNode::of(g.moment_arm_m);
   if (g.reference_length_m > 0.0) {
     put(t, "reference_length_m", g.reference_length_m);
     put(t, "reference_angle_deg", degrees(g.reference_angle_rad));
@@ -87,7 +96,8 @@ TomlNode drive_node(const data::MuscleDrive& d) {
   TomlNode t = TomlNode::table();
   switch (d.kind) {
     case data::MuscleDrive::Kind::channels:
-      for (const auto& [channel, weight] : d.channels) t.member("channels").member(channel) = TomlNode::of(weight);
+      for (const auto& [channel, weight] : d.channels)
+        t.member("channels").member(channel) = TomlNode::of(weight);
       break;
     case data::MuscleDrive::Kind::rule:
       t.member(d.rule) = TomlNode::of(d.muscles);
@@ -148,6 +158,8 @@ TomlNode scene_tree(const data::Scene& scene) {
   return root;
 }
 
-std::string write_scene(const data::Scene& scene) { return write_toml(scene_tree(scene)); }
+std::string write_scene(const data::Scene& scene) {
+  return write_toml(scene_tree(scene));
+}
 
 }  // namespace brachium::io

@@ -11,11 +11,14 @@ namespace {
 
 void check(const Body& b) {
   const auto refuse = [&b](const char* what, double value, const char* domain) {
-    throw data::InputError("out-of-range", fmt::format("the {} of `{}` must be {}, not {}", what, b.name, domain, value));
+    throw data::InputError("out-of-range",
+                           fmt::format("the {} of `{}` must be {}, not {}", what, b.name, domain, value));
   };
   if (!(b.mass_kg >= 0.0) || !std::isfinite(b.mass_kg)) refuse("mass", b.mass_kg, "0 kg or greater");
-  if (!(b.distance_m >= 0.0) || !std::isfinite(b.distance_m)) refuse("distance", b.distance_m, "0 m or greater");
-  if (!(b.inertia_kg_m2 >= 0.0) || !std::isfinite(b.inertia_kg_m2)) refuse("inertia", b.inertia_kg_m2, "0 kg m^2 or greater");
+  if (!(b.distance_m >= 0.0) || !std::isfinite(b.distance_m))
+    refuse("distance", b.distance_m, "0 m or greater");
+  if (!(b.inertia_kg_m2 >= 0.0) || !std::isfinite(b.inertia_kg_m2))
+    refuse("inertia", b.inertia_kg_m2, "0 kg m^2 or greater");
   for (const double sd : {b.mass_relative_sd, b.distance_sd_m, b.inertia_relative_sd}) {
     if (!(sd >= 0.0) || !std::isfinite(sd)) refuse("uncertainty", sd, "0 or greater");
   }
@@ -41,18 +44,19 @@ double BodySet::inertia_kg_m2() const {
   return sum;
 }
 
-BodySet bodies_of(const data::Scene& scene, const std::string& coordinate, const std::map<std::string, double>& conditions,
-                  const std::string& trial) {
+BodySet bodies_of(const data::Scene& scene, const std::string& coordinate,
+                  const std::map<std::string, double>& conditions, const std::string& trial) {
   BodySet set;
   set.coordinate = scene.coordinate(coordinate).name;
   set.body_mass_relative_sd = scene.body_mass_relative_sd;
   for (const data::Segment& s : scene.segments) {
     if (s.coordinate != coordinate) continue;
-    set.bodies.push_back({s.name, s.mass_kg, s.centre_of_mass_m, s.inertia_kg_m2, s.mass_relative_sd, s.centre_of_mass_sd_m,
-                          s.inertia_relative_sd, s.body_mass_fraction > 0.0});
+    set.bodies.push_back({s.name, s.mass_kg, s.centre_of_mass_m, s.inertia_kg_m2, s.mass_relative_sd,
+                          s.centre_of_mass_sd_m, s.inertia_relative_sd, s.body_mass_fraction > 0.0});
   }
   if (set.bodies.empty()) {
-    throw data::InputError("missing-segment", fmt::format("the scene has no segment on coordinate `{}`", coordinate),
+    throw data::InputError("missing-segment",
+                           fmt::format("the scene has no segment on coordinate `{}`", coordinate),
                            "add a [[segment]] with mass, centre of mass and inertia");
   }
   for (const data::Load& l : scene.loads) {
@@ -63,10 +67,11 @@ BodySet bodies_of(const data::Scene& scene, const std::string& coordinate, const
       if (at == conditions.end()) {
         std::vector<std::string> known;
         for (const auto& [name, value] : conditions) known.push_back(name);
-        throw data::InputError("missing-condition",
-                               fmt::format("load `{}` takes its mass from the condition `{}`, which {} does not give", l.name,
-                                           l.mass_condition, trial.empty() ? "the trial" : fmt::format("trial `{}`", trial)),
-                               known.empty() ? "state it in the session description" : data::suggest(l.mass_condition, known));
+        throw data::InputError(
+            "missing-condition",
+            fmt::format("load `{}` takes its mass from the condition `{}`, which {} does not give", l.name,
+                        l.mass_condition, trial.empty() ? "the trial" : fmt::format("trial `{}`", trial)),
+            known.empty() ? "state it in the session description" : data::suggest(l.mass_condition, known));
       }
       mass = at->second;
     }

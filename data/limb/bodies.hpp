@@ -42,11 +42,11 @@ struct BodySet {
   double inertia_kg_m2() const;
 };
 
-/// Segments and loads of one coordinate. `conditions` are the trial's numbers that loads may take their mass from
-/// (data::Trial::conditions); `trial` names it in messages.
-/// Throws InputError: "missing-condition", "missing-coordinate", "missing-segment" (nothing hangs on the hinge), or
-/// "out-of-range" (a mass, distance or inertia outside its domain).
-BodySet bodies_of(const data::Scene& scene, const std::string& coordinate, const std::map<std::string, double>& conditions,
-                  const std::string& trial = {});
+/// Segments and loads of one coordinate. `conditions` are the trial's numbers that loads may take their mass
+/// from (data::Trial::conditions); `trial` names it in messages. Throws InputError: "missing-condition",
+/// "missing-coordinate", "missing-segment" (nothing hangs on the hinge), or "out-of-range" (a mass, distance
+/// or inertia outside its domain).
+BodySet bodies_of(const data::Scene& scene, const std::string& coordinate,
+                  const std::map<std::string, double>& conditions, const std::string& trial = {});
 
 }  // namespace brachium::limb

@@ -14,8 +14,12 @@ namespace {
 
 using Eigen::Index;
 
-Eigen::Vector2d direction(double phi) { return {std::sin(phi), -std::cos(phi)}; }
-Eigen::Vector2d direction_slope(double phi) { return {std::cos(phi), std::sin(phi)}; }
+Eigen::Vector2d direction(double phi) {
+  return {std::sin(phi), -std::cos(phi)};
+}
+Eigen::Vector2d direction_slope(double phi) {
+  return {std::cos(phi), std::sin(phi)};
+}
 
 // Sums over all links distal to each hinge: what acts in inclinations, brought to hinge angles.
 Eigen::VectorXd distal_sums(Eigen::VectorXd v) {
@@ -25,7 +29,8 @@ Eigen::VectorXd distal_sums(Eigen::VectorXd v) {
 
 }  // namespace
 
-PlanarChain::PlanarChain(std::vector<Link> links, Eigen::Vector2d gravity) : links_(std::move(links)), gravity_(std::move(gravity)) {
+PlanarChain::PlanarChain(std::vector<Link> links, Eigen::Vector2d gravity)
+    : links_(std::move(links)), gravity_(std::move(gravity)) {
   if (links_.empty()) throw data::InputError("missing-segment", "a chain needs at least one link");
   if (!gravity_.allFinite()) throw data::InputError("not-finite", "gravity is not a finite vector");
   const auto n = static_cast<Index>(links_.size());
@@ -36,13 +41,16 @@ PlanarChain::PlanarChain(std::vector<Link> links, Eigen::Vector2d gravity) : lin
     const Link& link = links_[static_cast<std::size_t>(i)];
     const bool last = i == n - 1;
     if (!last && !(link.length_m > 0.0)) {
-      throw data::InputError("out-of-range", fmt::format("the length of link {} must be greater than 0 m, not {}", i + 1, link.length_m));
+      throw data::InputError(
+          "out-of-range",
+          fmt::format("the length of link {} must be greater than 0 m, not {}", i + 1, link.length_m));
     }
     const double length = last ? 0.0 : link.length_m;
     k_(i) = link.bodies.first_moment_kg_m() + length * carried;
     a_(i, i) = link.bodies.inertia_kg_m2() + length * length * carried;
     if (!(a_(i, i) > 0.0)) {
-      throw data::InputError("out-of-range", fmt::format("link {} has no inertia about its hinge", i + 1), "give its segment a mass");
+      throw data::InputError("out-of-range", fmt::format("link {} has no inertia about its hinge", i + 1),
+                             "give its segment a mass");
     }
     for (Index j = i + 1; j < n; ++j) a_(i, j) = a_(j, i) = length * k_(j);
     carried += link.bodies.mass_kg();
@@ -51,7 +59,8 @@ PlanarChain::PlanarChain(std::vector<Link> links, Eigen::Vector2d gravity) : lin
 
 void PlanarChain::check(const Eigen::VectorXd& v, const char* what) const {
   if (v.size() != static_cast<Index>(links_.size())) {
-    throw data::InputError("wrong-size", fmt::format("{} has {} entries for a chain of {} hinges", what, v.size(), links_.size()));
+    throw data::InputError("wrong-size", fmt::format("{} has {} entries for a chain of {} hinges", what,
+                                                     v.size(), links_.size()));
   }
   if (!v.allFinite()) throw data::InputError("not-finite", fmt::format("{} is not finite", what));
 }
@@ -97,15 +106,18 @@ Eigen::MatrixXd PlanarChain::gravity_stiffness(const Eigen::VectorXd& q, const B
   return k;
 }
 
-Eigen::VectorXd PlanarChain::force_moment(const Eigen::VectorXd& q, const std::vector<PointForce>& forces, const BaseMotion& base) const {
+Eigen::VectorXd PlanarChain::force_moment(const Eigen::VectorXd& q, const std::vector<PointForce>& forces,
+                                          const BaseMotion& base) const {
   check(q, "the angle");
   const Eigen::VectorXd phi = inclinations(q, base.inclination_rad);
   Eigen::VectorXd m = Eigen::VectorXd::Zero(q.size());
   for (const PointForce& f : forces) {
     if (f.link >= links_.size()) {
-      throw data::InputError("wrong-size", fmt::format("a force on link {} of a chain of {}", f.link + 1, links_.size()));
+      throw data::InputError("wrong-size",
+                             fmt::format("a force on link {} of a chain of {}", f.link + 1, links_.size()));
     }
-    if (!f.force_N.allFinite() || !std::isfinite(f.distance_m)) throw data::InputError("not-finite", "a force on the limb is not finite");
+    if (!f.force_N.allFinite() || !std::isfinite(f.distance_m))
+      throw data::InputError("not-finite", "a force on the limb is not finite");
     const auto at = static_cast<Index>(f.link);
     // A force on link i also pulls at the end of every link before it.
     for (Index i = 0; i <= at; ++i) {
@@ -116,8 +128,9 @@ Eigen::VectorXd PlanarChain::force_moment(const Eigen::VectorXd& q, const std::v
   return distal_sums(std::move(m));
 }
 
-Eigen::VectorXd PlanarChain::inverse_dynamics(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::VectorXd& qddot,
-                                              const BaseMotion& base, const std::vector<PointForce>& forces) const {
+Eigen::VectorXd PlanarChain::inverse_dynamics(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
+                                              const Eigen::VectorXd& qddot, const BaseMotion& base,
+                                              const std::vector<PointForce>& forces) const {
   check(q, "the angle");
   check(qdot, "the angular velocity");
   check(qddot, "the angular acceleration");
@@ -129,14 +142,16 @@ Eigen::VectorXd PlanarChain::inverse_dynamics(const Eigen::VectorXd& q, const Ei
   for (Index i = 0; i < q.size(); ++i) {
     m(i) = -k_(i) * fall.dot(direction_slope(phi(i)));
     for (Index j = 0; j < q.size(); ++j) {
-      m(i) += a_(i, j) * (std::cos(phi(i) - phi(j)) * acceleration(j) + std::sin(phi(i) - phi(j)) * rate(j) * rate(j));
+      m(i) += a_(i, j) *
+              (std::cos(phi(i) - phi(j)) * acceleration(j) + std::sin(phi(i) - phi(j)) * rate(j) * rate(j));
     }
   }
   return distal_sums(std::move(m)) - force_moment(q, forces, base);
 }
 
-Eigen::VectorXd PlanarChain::forward_dynamics(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::VectorXd& moment,
-                                              const BaseMotion& base, const std::vector<PointForce>& forces) const {
+Eigen::VectorXd PlanarChain::forward_dynamics(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
+                                              const Eigen::VectorXd& moment, const BaseMotion& base,
+                                              const std::vector<PointForce>& forces) const {
   check(moment, "the moment");
   const Eigen::VectorXd bias = inverse_dynamics(q, qdot, Eigen::VectorXd::Zero(q.size()), base, forces);
   return mass_matrix(q).ldlt().solve(moment - bias);
@@ -155,7 +170,8 @@ double PlanarChain::potential_energy_J(const Eigen::VectorXd& q, const BaseMotio
   return energy;
 }
 
-PlanarChain chain_of(const data::Scene& scene, const std::map<std::string, double>& conditions, const std::string& trial) {
+PlanarChain chain_of(const data::Scene& scene, const std::map<std::string, double>& conditions,
+                     const std::string& trial) {
   std::vector<Link> links;
   std::string at;  // the hinge whose child comes next; empty: the ground
   for (std::size_t count = 0; count < scene.coordinates.size(); ++count) {
@@ -163,8 +179,9 @@ PlanarChain chain_of(const data::Scene& scene, const std::map<std::string, doubl
     for (const auto& c : scene.coordinates) {
       if (c.parent != at) continue;
       if (next) {
-        throw data::InputError("not-a-chain", fmt::format("coordinates `{}` and `{}` both hang on {}", next->name, c.name,
-                                                          at.empty() ? "the ground" : fmt::format("`{}`", at)),
+        throw data::InputError("not-a-chain",
+                               fmt::format("coordinates `{}` and `{}` both hang on {}", next->name, c.name,
+                                           at.empty() ? "the ground" : fmt::format("`{}`", at)),
                                "inverse dynamics knows chains of hinges, not trees");
       }
       next = &c;

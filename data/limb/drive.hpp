@@ -18,7 +18,8 @@
 namespace brachium::limb {
 
 struct DriveMap {
-  std::vector<std::string> channels;  ///< columns: those available channels that drive a muscle, in their order
+  std::vector<std::string>
+      channels;  ///< columns: those available channels that drive a muscle, in their order
   std::vector<std::string> muscles;   ///< rows: all muscles of the scene, in its order
   Eigen::MatrixXd weights;            ///< n_m x n_c; the row of an undriven muscle is zero
   std::vector<std::string> undriven;  ///< muscles without excitation, in the scene's order
@@ -31,13 +32,15 @@ struct DriveMistake {
   data::Diagnostic finding;
 };
 
-/// Every mistake in the drives of a scene, given the channels that can drive a muscle (see drive_map for codes).
-std::vector<DriveMistake> drive_mistakes(const data::Scene& scene, std::span<const std::string> available_channels);
+/// Every mistake in the drives of a scene, given the channels that can drive a muscle (see drive_map for
+/// codes).
+std::vector<DriveMistake> drive_mistakes(const data::Scene& scene,
+                                         std::span<const std::string> available_channels);
 
-/// Resolves the drives of a scene. Rules: "same_as" (one muscle), "mean_of" (the plain mean of two or more); they
-/// may refer to muscles that are themselves driven by a rule, and to no undriven one.
-/// Throws InputError with every mistake: "unmapped-channel" (a channel that is not available), "unknown-rule",
-/// "bad-rule" (wrong number of muscles), "unknown-muscle", "rule-cycle", "undriven-source", "out-of-range" (weight).
+/// Resolves the drives of a scene. Rules: "same_as" (one muscle), "mean_of" (the plain mean of two or more);
+/// they may refer to muscles that are themselves driven by a rule, and to no undriven one. Throws InputError
+/// with every mistake: "unmapped-channel" (a channel that is not available), "unknown-rule", "bad-rule"
+/// (wrong number of muscles), "unknown-muscle", "rule-cycle", "undriven-source", "out-of-range" (weight).
 DriveMap drive_map(const data::Scene& scene, std::span<const std::string> available_channels);
 
 /// The same with the channels that the scene itself names.

@@ -11,7 +11,9 @@ namespace {
 
 using Eigen::Index;
 
-Index samples_of(double duration_s, double rate_hz) { return std::max<Index>(1, static_cast<Index>(std::ceil(duration_s * rate_hz))); }
+Index samples_of(double duration_s, double rate_hz) {
+  return std::max<Index>(1, static_cast<Index>(std::ceil(duration_s * rate_hz)));
+}
 
 Phase phase_over(const Eigen::VectorXd& values, Index first, Index last) {
   Phase p;
@@ -38,7 +40,9 @@ std::vector<Phase> isokinetic_phases(const DynamometerRecord& record, const Isok
   const Index shortest = samples_of(options.min_duration_s, record.rate_hz);
   // +1 or -1 where the machine runs at its set speed, 0 in ramps and at rest.
   const auto direction = [&](Index i) {
-    if (!(std::abs(std::abs(v(i)) - options.speed_rad_per_s) <= options.relative_tolerance * options.speed_rad_per_s)) return 0;
+    if (!(std::abs(std::abs(v(i)) - options.speed_rad_per_s) <=
+          options.relative_tolerance * options.speed_rad_per_s))
+      return 0;
     return v(i) > 0.0 ? 1 : -1;
   };
   std::vector<Phase> phases;
@@ -62,7 +66,8 @@ std::vector<Phase> isometric_holds(const DynamometerRecord& record, const HoldOp
     double lowest = t(first), highest = t(first);
     Index last = first;
     for (; last < t.size(); ++last) {
-      const double low = std::min(lowest, t(last)), high = std::max(highest, t(last)), middle = 0.5 * (low + high);
+      const double low = std::min(lowest, t(last)), high = std::max(highest, t(last)),
+                   middle = 0.5 * (low + high);
       if (!(std::abs(record.velocity_rad_per_s(last)) <= options.max_speed_rad_per_s)) break;
       if (!(std::abs(middle) >= options.min_torque_N_m)) break;
       if (!(0.5 * (high - low) <= options.relative_tolerance * std::abs(middle))) break;
@@ -83,7 +88,8 @@ Eigen::VectorXd phase_mask(const std::vector<Phase>& phases, Index count) {
   Eigen::VectorXd mask = Eigen::VectorXd::Zero(count);
   for (const Phase& p : phases) {
     if (p.first < 0 || p.last > count || p.first > p.last) {
-      throw data::InputError("wrong-size", fmt::format("a phase from sample {} to {} of {}", p.first, p.last, count));
+      throw data::InputError("wrong-size",
+                             fmt::format("a phase from sample {} to {} of {}", p.first, p.last, count));
     }
     mask.segment(p.first, p.last - p.first).setOnes();
   }

@@ -28,25 +28,29 @@ struct ForearmMotion {
   Eigen::Matrix3Xd direction;  ///< u, 3 x n
   Eigen::Matrix3Xd elbow_m;    ///< 3 x n, or 3 x 0: the elbow does not accelerate
   Eigen::Vector3d up{0.0, 0.0, 1.0};
-  std::string origin;          ///< one sentence for reports: where this came from
+  std::string origin;  ///< one sentence for reports: where this came from
 };
 
 /// Signals that belong together (components of a point, of a quaternion) as the rows of a matrix. Throws
-/// InputError("rates-disagree") where rate, start time or count differ, naming both signals, or ("wrong-size").
+/// InputError("rates-disagree") where rate, start time or count differ, naming both signals, or
+/// ("wrong-size").
 Eigen::MatrixXd stacked(std::span<const data::Signal> components);
 
-/// u = R(quaternion) b. Quaternions are 4 x n, rows x, y, z, w. Throws InputError("not-finite"), ("bad-quaternion")
-/// for a norm further than 1e-3 from 1 (sample named), ("out-of-range") for a vector of no length.
-ForearmMotion motion_from_orientation(const Eigen::Matrix4Xd& quaternion_xyzw, double rate_hz, const OrientationConvention& convention);
+/// u = R(quaternion) b. Quaternions are 4 x n, rows x, y, z, w. Throws InputError("not-finite"),
+/// ("bad-quaternion") for a norm further than 1e-3 from 1 (sample named), ("out-of-range") for a vector of no
+/// length.
+ForearmMotion motion_from_orientation(const Eigen::Matrix4Xd& quaternion_xyzw, double rate_hz,
+                                      const OrientationConvention& convention);
 
 /// u from the elbow to a distal point (the mean of both styloids, a hand marker), both 3 x n in m.
 /// Throws InputError("not-finite") or ("wrong-size"), or ("out-of-range") where the points coincide.
-ForearmMotion motion_from_points(const Eigen::Matrix3Xd& elbow_m, const Eigen::Matrix3Xd& distal_m, double rate_hz,
-                                 const Eigen::Vector3d& up = {0.0, 0.0, 1.0});
+ForearmMotion motion_from_points(const Eigen::Matrix3Xd& elbow_m, const Eigen::Matrix3Xd& distal_m,
+                                 double rate_hz, const Eigen::Vector3d& up = {0.0, 0.0, 1.0});
 
-/// u in a vertical plane from the flexion angle alone, with an upper arm at a fixed inclination from straight down
-/// (forward positive): inclination of the forearm = inclination + q.
-ForearmMotion motion_from_angle(const Eigen::VectorXd& angle_rad, double rate_hz, double upper_arm_inclination_rad);
+/// u in a vertical plane from the flexion angle alone, with an upper arm at a fixed inclination from straight
+/// down (forward positive): inclination of the forearm = inclination + q.
+ForearmMotion motion_from_angle(const Eigen::VectorXd& angle_rad, double rate_hz,
+                                double upper_arm_inclination_rad);
 
 /// Angle between two directions over a trial.
 struct DirectionAgreement {
@@ -57,8 +61,9 @@ struct DirectionAgreement {
 };
 DirectionAgreement compare_directions(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b);
 
-/// Inclination of the upper arm that a forearm's direction and the elbow angle together imply, from straight down:
-/// elevation of the forearm minus flexion. Far from constant: the upper arm moved, or angle and direction disagree.
+/// Inclination of the upper arm that a forearm's direction and the elbow angle together imply, from straight
+/// down: elevation of the forearm minus flexion. Far from constant: the upper arm moved, or angle and
+/// direction disagree.
 struct ImpliedInclination {
   double mean_rad = 0.0;
   double lowest_rad = 0.0;
@@ -71,6 +76,7 @@ struct LongAxisEstimate {
   Eigen::Vector3d long_axis;  ///< unit length
   double scatter_deg = 0.0;   ///< root mean square angle of single samples from it
 };
-LongAxisEstimate estimate_long_axis(const Eigen::Matrix4Xd& quaternion_xyzw, const Eigen::Matrix3Xd& direction, bool segment_to_world = true);
+LongAxisEstimate estimate_long_axis(const Eigen::Matrix4Xd& quaternion_xyzw,
+                                    const Eigen::Matrix3Xd& direction, bool segment_to_world = true);
 
 }  // namespace brachium::limb

@@ -34,23 +34,26 @@ double simpson(const data::PiecewiseCubic& f, double a, double b) {
 void require_finite(const std::string& muscle, const std::vector<double>& values, const char* what) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {
-      throw InputError("bad-geometry", fmt::format("{} {} of muscle `{}` is not a finite number", what, i + 1, muscle));
+      throw InputError("bad-geometry",
+                       fmt::format("{} {} of muscle `{}` is not a finite number", what, i + 1, muscle));
     }
   }
 }
 
 }  // namespace
 
-MusclePath::MusclePath(std::string muscle, const data::PathGeometry& geometry, const data::Coordinate& coordinate)
+MusclePath::MusclePath(std::string muscle, const data::PathGeometry& geometry,
+                       const data::Coordinate& coordinate)
     : muscle_(std::move(muscle)),
       coordinate_(coordinate.name),
       lower_(coordinate.lower_rad),
       upper_(coordinate.upper_rad) {
   if (!(lower_ < upper_) || !std::isfinite(lower_) || !std::isfinite(upper_)) {
-    throw InputError("bad-range", fmt::format("the range of coordinate `{}` is empty: {:.6g} to {:.6g} deg", coordinate_,
-                                              lower_ * degrees, upper_ * degrees));
+    throw InputError("bad-range", fmt::format("the range of coordinate `{}` is empty: {:.6g} to {:.6g} deg",
+                                              coordinate_, lower_ * degrees, upper_ * degrees));
   }
-  if (geometry.kind == data::PathGeometry::Kind::none || (geometry.length_m.empty() && geometry.moment_arm_m.empty())) {
+  if (geometry.kind == data::PathGeometry::Kind::none ||
+      (geometry.length_m.empty() && geometry.moment_arm_m.empty())) {
     throw InputError("missing-geometry", fmt::format("muscle `{}` has no geometry", muscle_),
                      "give its length, its moment arm, or both against the angle");
   }
@@ -58,17 +61,19 @@ MusclePath::MusclePath(std::string muscle, const data::PathGeometry& geometry, c
   require_finite(muscle_, geometry.moment_arm_m, "moment arm entry");
   require_finite(muscle_, geometry.angle_rad, "angle knot");
   if (geometry.length_m.empty() && !(geometry.reference_length_m > 0.0)) {
-    throw InputError("bad-geometry",
-                     fmt::format("muscle `{}` has a moment arm but neither a length nor a reference length", muscle_),
-                     "give the length at one angle: the moment arm only tells how it changes");
+    throw InputError(
+        "bad-geometry",
+        fmt::format("muscle `{}` has a moment arm but neither a length nor a reference length", muscle_),
+        "give the length at one angle: the moment arm only tells how it changes");
   }
   if (geometry.length_m.empty() &&
       !(geometry.reference_angle_rad >= lower_ && geometry.reference_angle_rad <= upper_)) {
-    throw InputError("bad-geometry",
-                     fmt::format("the reference angle {:.6g} deg of muscle `{}` is outside the range {:.6g} to {:.6g} deg "
-                                 "of coordinate `{}`",
-                                 geometry.reference_angle_rad * degrees, muscle_, lower_ * degrees, upper_ * degrees,
-                                 coordinate_));
+    throw InputError(
+        "bad-geometry",
+        fmt::format("the reference angle {:.6g} deg of muscle `{}` is outside the range {:.6g} to {:.6g} deg "
+                    "of coordinate `{}`",
+                    geometry.reference_angle_rad * degrees, muscle_, lower_ * degrees, upper_ * degrees,
+                    coordinate_));
   }
   if (geometry.kind == data::PathGeometry::Kind::polynomial) {
     build_polynomial(geometry);
@@ -98,30 +103,35 @@ void MusclePath::build_table(const data::PathGeometry& g) {
   const std::vector<double>& q = g.angle_rad;
   const auto wrong_size = [&](const std::vector<double>& values, const char* what) {
     if (!values.empty() && values.size() != q.size()) {
-      throw InputError("bad-geometry", fmt::format("the table of muscle `{}` has {} angles but {} {}", muscle_, q.size(),
-                                                   values.size(), what));
+      throw InputError("bad-geometry", fmt::format("the table of muscle `{}` has {} angles but {} {}",
+                                                   muscle_, q.size(), values.size(), what));
     }
   };
   wrong_size(g.length_m, "lengths");
   wrong_size(g.moment_arm_m, "moment arms");
   if (q.size() < 2) {
-    throw InputError("bad-geometry", fmt::format("the table of muscle `{}` needs at least two angles", muscle_));
+    throw InputError("bad-geometry",
+                     fmt::format("the table of muscle `{}` needs at least two angles", muscle_));
   }
   for (std::size_t i = 1; i < q.size(); ++i) {
     if (!(q[i] > q[i - 1])) {
-      throw InputError("bad-geometry", fmt::format("the angles of muscle `{}` must increase, but {:.6g} deg follows {:.6g} deg",
-                                                   muscle_, q[i] * degrees, q[i - 1] * degrees));
+      throw InputError(
+          "bad-geometry",
+          fmt::format("the angles of muscle `{}` must increase, but {:.6g} deg follows {:.6g} deg", muscle_,
+                      q[i] * degrees, q[i - 1] * degrees));
     }
   }
   // A range written in degrees and knots written in degrees may differ in the last digit after conversion.
   const double slack = 1e-9;
   if (!(q.front() <= lower_ + slack && q.back() >= upper_ - slack)) {
-    throw InputError("bad-geometry",
-                     fmt::format("the table of muscle `{}` covers {:.6g} to {:.6g} deg, less than the range {:.6g} to {:.6g} "
-                                 "deg of coordinate `{}`",
-                                 muscle_, q.front() * degrees, q.back() * degrees, lower_ * degrees, upper_ * degrees,
-                                 coordinate_),
-                     "extend the table or narrow the coordinate's range_deg");
+    throw InputError(
+        "bad-geometry",
+        fmt::format(
+            "the table of muscle `{}` covers {:.6g} to {:.6g} deg, less than the range {:.6g} to {:.6g} "
+            "deg of coordinate `{}`",
+            muscle_, q.front() * degrees, q.back() * degrees, lower_ * degrees, upper_ * degrees,
+            coordinate_),
+        "extend the table or narrow the coordinate's range_deg");
   }
   if (!g.length_m.empty() && !g.moment_arm_m.empty()) {
     consistency_.both_given = true;
@@ -133,7 +143,8 @@ void MusclePath::build_table(const data::PathGeometry& g) {
   } else {
     curve_ = data::PiecewiseCubic::monotone(q, g.moment_arm_m);
     knot_length_.assign(q.size(), 0.0);
-    for (std::size_t i = 1; i < q.size(); ++i) knot_length_[i] = knot_length_[i - 1] - simpson(*curve_, q[i - 1], q[i]);
+    for (std::size_t i = 1; i < q.size(); ++i)
+      knot_length_[i] = knot_length_[i - 1] - simpson(*curve_, q[i - 1], q[i]);
     const double shift = g.reference_length_m - unchecked(g.reference_angle_rad).length_m;
     for (double& length : knot_length_) length += shift;
   }
@@ -158,7 +169,8 @@ MusclePath::Value MusclePath::unchecked(double q) const {
 void MusclePath::check_consistency(double tolerance_m) {
   if (!consistency_.both_given) return;
   if (!(tolerance_m > 0.0)) {
-    throw InputError("bad-geometry", fmt::format("the consistency tolerance of muscle `{}` must be greater than 0", muscle_));
+    throw InputError("bad-geometry",
+                     fmt::format("the consistency tolerance of muscle `{}` must be greater than 0", muscle_));
   }
   consistency_.tolerance_m = tolerance_m;
   double given = 0.0, slope = 0.0;
@@ -190,13 +202,13 @@ void MusclePath::check_consistency(double tolerance_m) {
     }
   }
   if (!(consistency_.worst_disagreement_m <= tolerance_m)) {
-    throw InputError(
-        "inconsistent-geometry",
-        fmt::format("length and moment arm of muscle `{}` disagree: at {:.4g} deg the moment arm is {:.4g} mm, but -dL/dq is "
-                    "{:.4g} mm; they differ by {:.3g} mm, more than {:.3g} mm",
-                    muscle_, consistency_.worst_angle_rad * degrees, given * 1e3, slope * 1e3,
-                    consistency_.worst_disagreement_m * 1e3, tolerance_m * 1e3),
-        "r = -dL/dq with flexion positive: check sign and units of both, or leave one out");
+    throw InputError("inconsistent-geometry",
+                     fmt::format("length and moment arm of muscle `{}` disagree: at {:.4g} deg the moment "
+                                 "arm is {:.4g} mm, but -dL/dq is "
+                                 "{:.4g} mm; they differ by {:.3g} mm, more than {:.3g} mm",
+                                 muscle_, consistency_.worst_angle_rad * degrees, given * 1e3, slope * 1e3,
+                                 consistency_.worst_disagreement_m * 1e3, tolerance_m * 1e3),
+                     "r = -dL/dq with flexion positive: check sign and units of both, or leave one out");
   }
 }
 
@@ -206,20 +218,23 @@ void MusclePath::check_lengths() const {
     const double q = lower_ + (upper_ - lower_) * i / steps;
     const double length = unchecked(q).length_m;
     if (!(length > 0.0)) {
-      throw InputError("bad-geometry", fmt::format("muscle `{}` has a length of {:.4g} m at {:.4g} deg", muscle_, length,
-                                                   q * degrees),
-                       "a muscle-tendon length is positive over the whole range of its coordinate");
+      throw InputError(
+          "bad-geometry",
+          fmt::format("muscle `{}` has a length of {:.4g} m at {:.4g} deg", muscle_, length, q * degrees),
+          "a muscle-tendon length is positive over the whole range of its coordinate");
     }
   }
 }
 
 MusclePath::Value MusclePath::operator()(double q) const {
   if (!(q >= lower_ && q <= upper_)) {
-    throw InputError("angle-out-of-range",
-                     fmt::format("angle {:.2f} deg is outside the range {:.6g} to {:.6g} deg of coordinate `{}` for which the "
-                                 "geometry of muscle `{}` holds",
-                                 q * degrees, lower_ * degrees, upper_ * degrees, coordinate_, muscle_),
-                     "check the angle's sign, offset and unit, or give geometry for a wider range");
+    throw InputError(
+        "angle-out-of-range",
+        fmt::format(
+            "angle {:.2f} deg is outside the range {:.6g} to {:.6g} deg of coordinate `{}` for which the "
+            "geometry of muscle `{}` holds",
+            q * degrees, lower_ * degrees, upper_ * degrees, coordinate_, muscle_),
+        "check the angle's sign, offset and unit, or give geometry for a wider range");
   }
   return unchecked(q);
 }
@@ -229,9 +244,11 @@ void MusclePath::evaluate(std::span<const double> q, std::span<const double> qdo
   const std::size_t n = q.size();
   if (length.size() != n || moment_arm.size() != n || qdot.size() != velocity.size() ||
       (!qdot.empty() && qdot.size() != n)) {
-    throw InputError("wrong-size", fmt::format("path of muscle `{}`: spans of {} angles, {} velocities, {} lengths, {} moment "
-                                               "arms and {} muscle velocities do not fit together",
-                                               muscle_, n, qdot.size(), length.size(), moment_arm.size(), velocity.size()));
+    throw InputError(
+        "wrong-size",
+        fmt::format("path of muscle `{}`: spans of {} angles, {} velocities, {} lengths, {} moment "
+                    "arms and {} muscle velocities do not fit together",
+                    muscle_, n, qdot.size(), length.size(), moment_arm.size(), velocity.size()));
   }
   for (std::size_t i = 0; i < n; ++i) {
     const Value at = (*this)(q[i]);
@@ -239,7 +256,9 @@ void MusclePath::evaluate(std::span<const double> q, std::span<const double> qdo
     moment_arm[i] = at.moment_arm_m;
     if (!qdot.empty()) {
       if (!std::isfinite(qdot[i])) {
-        throw InputError("not-finite", fmt::format("the rate of coordinate `{}` is not a finite number at sample {}", coordinate_, i));
+        throw InputError(
+            "not-finite",
+            fmt::format("the rate of coordinate `{}` is not a finite number at sample {}", coordinate_, i));
       }
       velocity[i] = -at.moment_arm_m * qdot[i];
     }

@@ -23,20 +23,21 @@
 
 namespace brachium::limb {
 
-/// How well a given length and a given moment arm agree: the worst of |r + dL/dq| over the coordinate's range.
+/// How well a given length and a given moment arm agree: the worst of |r + dL/dq| over the coordinate's
+/// range.
 struct PathConsistency {
-  bool both_given = false;              ///< false: one was derived from the other, nothing to compare
-  double worst_disagreement_m = 0.0;    ///< largest |r + dL/dq|
-  double worst_angle_rad = 0.0;         ///< where
-  double tolerance_m = 0.0;             ///< PathGeometry::consistency_tolerance_m
+  bool both_given = false;            ///< false: one was derived from the other, nothing to compare
+  double worst_disagreement_m = 0.0;  ///< largest |r + dL/dq|
+  double worst_angle_rad = 0.0;       ///< where
+  double tolerance_m = 0.0;           ///< PathGeometry::consistency_tolerance_m
 };
 
 /// A muscle's path over one coordinate. Const, and safe to call from several threads.
 ///
-/// Polynomials are taken as given; the one that is missing is derived exactly (the moment arm as -dL/dq, or the
-/// length by integration from the reference length). Tables:
-///   length and moment arm   cubic Hermite through the lengths with knot slopes -r; r(q) = -dL/dq of that curve
-///   length only             twice continuously differentiable spline, so that the moment arm is smooth
+/// Polynomials are taken as given; the one that is missing is derived exactly (the moment arm as -dL/dq, or
+/// the length by integration from the reference length). Tables:
+///   length and moment arm   cubic Hermite through the lengths with knot slopes -r; r(q) = -dL/dq of that
+///   curve length only             twice continuously differentiable spline, so that the moment arm is smooth
 ///   moment arm only         monotone cubic through the moment arms; length by exact integration
 /// In every case but two given polynomials, r(q) = -dL/dq to rounding error.
 class MusclePath {
@@ -56,8 +57,9 @@ class MusclePath {
   Value operator()(double q_rad) const;
 
   /// Batch: out spans have the size of q_rad; qdot and velocity may both be empty. v = -r q'.
-  void evaluate(std::span<const double> q_rad, std::span<const double> qdot_rad_per_s, std::span<double> length_m,
-                std::span<double> moment_arm_m, std::span<double> velocity_m_per_s) const;
+  void evaluate(std::span<const double> q_rad, std::span<const double> qdot_rad_per_s,
+                std::span<double> length_m, std::span<double> moment_arm_m,
+                std::span<double> velocity_m_per_s) const;
 
   const std::string& muscle() const { return muscle_; }
   const std::string& coordinate() const { return coordinate_; }
@@ -75,7 +77,7 @@ class MusclePath {
   std::string muscle_, coordinate_;
   double lower_, upper_;
   PathConsistency consistency_;
-  std::vector<double> length_, arm_;         // polynomial coefficients
+  std::vector<double> length_, arm_;           // polynomial coefficients
   std::optional<data::PiecewiseCubic> curve_;  // table: length, or moment arm where only that is known
   std::vector<double> knot_length_;            // table of moment arms: length at each knot
 };

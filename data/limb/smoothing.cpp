@@ -18,7 +18,8 @@ struct Biquad {
 // Bilinear second-order Butterworth low-pass with tan(pi f / f_s) = w.
 Biquad butterworth(double w) {
   const double scale = 1.0 / (1.0 + std::numbers::sqrt2 * w + w * w);
-  return {w * w * scale, 2.0 * w * w * scale, w * w * scale, 2.0 * (w * w - 1.0) * scale, (1.0 - std::numbers::sqrt2 * w + w * w) * scale};
+  return {w * w * scale, 2.0 * w * w * scale, w * w * scale, 2.0 * (w * w - 1.0) * scale,
+          (1.0 - std::numbers::sqrt2 * w + w * w) * scale};
 }
 
 // One pass in the transposed direct form II, started in the steady state of a constant first sample.
@@ -35,24 +36,29 @@ void pass(const Biquad& f, std::vector<double>& x) {
 
 }  // namespace
 
-std::size_t Smoothing::edge_samples() const { return static_cast<std::size_t>(std::ceil(rate_hz / cutoff_hz)); }
+std::size_t Smoothing::edge_samples() const {
+  return static_cast<std::size_t>(std::ceil(rate_hz / cutoff_hz));
+}
 
 std::vector<double> smooth(std::span<const double> samples, const Smoothing& s, const std::string& what) {
   if (!(s.rate_hz > 0.0) || !(s.cutoff_hz > 0.0) || !(s.cutoff_hz < 0.45 * s.rate_hz)) {
-    throw data::InputError("cutoff-above-nyquist", fmt::format("the cut-off {:.6g} Hz for {} must lie above 0 and below 0.45 of its "
-                                                               "rate {:.6g} Hz",
-                                                               s.cutoff_hz, what, s.rate_hz));
+    throw data::InputError("cutoff-above-nyquist",
+                           fmt::format("the cut-off {:.6g} Hz for {} must lie above 0 and below 0.45 of its "
+                                       "rate {:.6g} Hz",
+                                       s.cutoff_hz, what, s.rate_hz));
   }
   const std::size_t n = samples.size(), pad = 2 * s.edge_samples();
   if (n <= pad) {
-    throw data::InputError("trial-too-short", fmt::format("{} has {} samples; smoothing at {:.6g} Hz needs more than {}", what, n,
-                                                          s.cutoff_hz, pad),
+    throw data::InputError("trial-too-short",
+                           fmt::format("{} has {} samples; smoothing at {:.6g} Hz needs more than {}", what,
+                                       n, s.cutoff_hz, pad),
                            "use a longer trial or a higher cut-off");
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(samples[i])) {
-      throw data::InputError("not-finite", fmt::format("{} is not a finite number at sample {} ({:.6g} s)", what, i,
-                                                       static_cast<double>(i) / s.rate_hz),
+      throw data::InputError("not-finite",
+                             fmt::format("{} is not a finite number at sample {} ({:.6g} s)", what, i,
+                                         static_cast<double>(i) / s.rate_hz),
                              "fill or cut the gap before");
     }
   }
@@ -76,7 +82,8 @@ Eigen::MatrixXd smooth_rows(const Eigen::MatrixXd& rows, const Smoothing& s, con
   std::vector<double> row(static_cast<std::size_t>(rows.cols()));
   for (Eigen::Index r = 0; r < rows.rows(); ++r) {
     for (Eigen::Index i = 0; i < rows.cols(); ++i) row[static_cast<std::size_t>(i)] = rows(r, i);
-    const std::vector<double> smoothed = smooth(row, s, rows.rows() == 1 ? what : fmt::format("component {} of {}", r + 1, what));
+    const std::vector<double> smoothed =
+        smooth(row, s, rows.rows() == 1 ? what : fmt::format("component {} of {}", r + 1, what));
     for (Eigen::Index i = 0; i < rows.cols(); ++i) out(r, i) = smoothed[static_cast<std::size_t>(i)];
   }
   return out;
@@ -84,11 +91,14 @@ Eigen::MatrixXd smooth_rows(const Eigen::MatrixXd& rows, const Smoothing& s, con
 
 Eigen::MatrixXd derivative_rows(const Eigen::MatrixXd& x, double rate_hz) {
   const Eigen::Index n = x.cols();
-  if (n < 5) throw data::InputError("trial-too-short", fmt::format("a derivative needs at least 5 samples, not {}", n));
+  if (n < 5)
+    throw data::InputError("trial-too-short",
+                           fmt::format("a derivative needs at least 5 samples, not {}", n));
   Eigen::MatrixXd d(x.rows(), n);
   const double k = rate_hz / 12.0;
-  for (Eigen::Index i = 2; i + 2 < n; ++i) d.col(i) = k * (x.col(i - 2) - 8.0 * x.col(i - 1) + 8.0 * x.col(i + 1) - x.col(i + 2));
-  const auto end = [&](Eigen::Index i, Eigen::Index step, const double (&c)[5]) {
+  for (Eigen::Index i = 2; i + 2 < n; ++i)
+    d.col(i) = k * (x.col(i - 2) - 8.0 * x.col(i - 1) + 8.0 * x.col(i + 1) - x.col(i + 2));
+  const auto end = [&](Eigen::Index i, Eigen::Index step, const double(&c)[5]) {
     const double sign = static_cast<double>(step);
     const Eigen::Index first = step > 0 ? 0 : n - 1;
     d.col(i).setZero();

@@ -15,13 +15,16 @@ using Moment = std::function<double(double)>;
 double checked(const Moment& moment, double q) {
   const double m = moment(q);
   if (!std::isfinite(m)) {
-    throw data::ConvergenceFailure({"static balance", fmt::format("the moment at {:.6g} rad is not a finite number", q), 0, m, 0.0, {}});
+    throw data::ConvergenceFailure(
+        {"static balance", fmt::format("the moment at {:.6g} rad is not a finite number", q), 0, m, 0.0, {}});
   }
   return m;
 }
 
-// Bisection with secant steps where they fall inside the bracket (the Illinois variant of regula falsi): never leaves it.
-double bracketed_root(const Moment& moment, double a, double b, double fa, double fb, const BalanceOptions& options) {
+// Bisection with secant steps where they fall inside the bracket (the Illinois variant of regula falsi):
+// never leaves it.
+double bracketed_root(const Moment& moment, double a, double b, double fa, double fb,
+                      const BalanceOptions& options) {
   for (int i = 0; i < 200 && std::abs(b - a) > options.angle_tolerance_rad; ++i) {
     double c = (a * fb - b * fa) / (fb - fa);
     if (!(c > std::min(a, b) && c < std::max(a, b)) || i % 3 == 2) c = 0.5 * (a + b);
@@ -77,8 +80,11 @@ Equilibrium describe(const Moment& moment, double q, double lower, double upper)
 }  // namespace
 
 Balance balance_of(const Moment& moment, double lower, double upper, const BalanceOptions& options) {
-  if (!(lower < upper) || options.scan_points < 3 || !(options.angle_tolerance_rad > 0.0) || !(options.moment_tolerance_N_m > 0.0)) {
-    throw data::InputError("out-of-range", "static balance needs a range of angles, at least 3 scan points and tolerances above 0");
+  if (!(lower < upper) || options.scan_points < 3 || !(options.angle_tolerance_rad > 0.0) ||
+      !(options.moment_tolerance_N_m > 0.0)) {
+    throw data::InputError(
+        "out-of-range",
+        "static balance needs a range of angles, at least 3 scan points and tolerances above 0");
   }
   const std::size_t n = options.scan_points;
   std::vector<double> q(n), m(n);
@@ -106,7 +112,9 @@ Balance balance_of(const Moment& moment, double lower, double upper, const Balan
     if (i == 0 || i + 1 == n || m[i - 1] == 0.0 || m[i + 1] == 0.0) continue;
     const double sign = m[i] > 0.0 ? 1.0 : -1.0;
     // `<=` on one side only: of two equal lowest points, one speaks for both.
-    if (!(sign * m[i] <= sign * m[i - 1] && sign * m[i] < sign * m[i + 1] && sign * m[i - 1] > 0.0 && sign * m[i + 1] > 0.0)) continue;
+    if (!(sign * m[i] <= sign * m[i - 1] && sign * m[i] < sign * m[i + 1] && sign * m[i - 1] > 0.0 &&
+          sign * m[i + 1] > 0.0))
+      continue;
     const double c = smallest(moment, q[i - 1], q[i + 1], sign, options);
     const double mc = checked(moment, c);
     consider(c, mc);
@@ -127,15 +135,20 @@ Balance balance_of(const Moment& moment, double lower, double upper, const Balan
   return result;
 }
 
-Balance static_balance(const MuscleModel& model, const Eigen::VectorXd& activation, const ExternalMoment& external,
-                       const Eigen::VectorXd& q, double lower, double upper, const BalanceOptions& options) {
+Balance static_balance(const MuscleModel& model, const Eigen::VectorXd& activation,
+                       const ExternalMoment& external, const Eigen::VectorXd& q, double lower, double upper,
+                       const BalanceOptions& options) {
   if (model.traits().state_size != 0) {
-    throw data::InputError("not-quasi-static", fmt::format("static balance needs a model without internal state; `{}` has {} states",
-                                                           model.traits().rung, model.traits().state_size));
+    throw data::InputError(
+        "not-quasi-static",
+        fmt::format("static balance needs a model without internal state; `{}` has {} states",
+                    model.traits().rung, model.traits().state_size));
   }
-  if (static_cast<std::size_t>(q.size()) != model.coordinates().size() || options.coordinate >= model.coordinates().size()) {
-    throw data::InputError("wrong-size", fmt::format("{} angles and coordinate {} for a model of {} coordinates", q.size(),
-                                                     options.coordinate + 1, model.coordinates().size()));
+  if (static_cast<std::size_t>(q.size()) != model.coordinates().size() ||
+      options.coordinate >= model.coordinates().size()) {
+    throw data::InputError("wrong-size",
+                           fmt::format("{} angles and coordinate {} for a model of {} coordinates", q.size(),
+                                       options.coordinate + 1, model.coordinates().size()));
   }
   const auto at = static_cast<Eigen::Index>(options.coordinate);
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(q.size());

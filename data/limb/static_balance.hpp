@@ -24,13 +24,15 @@ struct Equilibrium {
 };
 
 struct BalanceOptions {
-  std::size_t coordinate = 0;       ///< which entry of q is sought
-  std::size_t scan_points = 361;    ///< roots closer together than the scan's step may be missed unless |M| dips to 0 there
+  std::size_t coordinate = 0;  ///< which entry of q is sought
+  std::size_t scan_points =
+      361;  ///< roots closer together than the scan's step may be missed unless |M| dips to 0 there
   double angle_tolerance_rad = 1e-10;
   double moment_tolerance_N_m = 1e-9;  ///< |M| at which a touching minimum counts as a root
 };
 
-/// No equilibrium in range is a result, not a failure: then `equilibria` is empty and `nearest` says how far off it is.
+/// No equilibrium in range is a result, not a failure: then `equilibria` is empty and `nearest` says how far
+/// off it is.
 struct Balance {
   std::vector<Equilibrium> equilibria;  ///< by increasing angle
   Equilibrium nearest;                  ///< where |M| is smallest over the range
@@ -41,10 +43,12 @@ using ExternalMoment = std::function<double(const Eigen::VectorXd& q)>;
 
 /// All angles in [lower, upper] that hold with given activations; the other coordinates stay as in `q`.
 /// Throws InputError("not-quasi-static") for a model with internal state, and what the model throws.
-Balance static_balance(const MuscleModel& model, const Eigen::VectorXd& activation, const ExternalMoment& external,
-                       const Eigen::VectorXd& q, double lower_rad, double upper_rad, const BalanceOptions& options = {});
+Balance static_balance(const MuscleModel& model, const Eigen::VectorXd& activation,
+                       const ExternalMoment& external, const Eigen::VectorXd& q, double lower_rad,
+                       double upper_rad, const BalanceOptions& options = {});
 
 /// The same for any moment M(q) over an interval.
-Balance balance_of(const std::function<double(double)>& moment, double lower_rad, double upper_rad, const BalanceOptions& options = {});
+Balance balance_of(const std::function<double(double)>& moment, double lower_rad, double upper_rad,
+                   const BalanceOptions& options = {});
 
 }  // namespace brachium::limb

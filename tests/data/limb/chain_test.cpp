@@ -47,13 +47,16 @@ TEST(PlanarChain, OneHingeIsTheCompoundPendulum) {
   EXPECT_NEAR(chain.inverse_dynamics(vec({1.0}), vec({0.0}), vec({0.0}), falling)(0), 0.0, 1e-14);
 }
 
-// Two point masses at the links' ends; angles from the horizontal (Craig, Introduction to Robotics, 3rd ed., eq. 6.58).
-VectorXd craig(double m1, double m2, double l1, double l2, const VectorXd& t, const VectorXd& td, const VectorXd& tdd) {
+// Two point masses at the links' ends; angles from the horizontal (Craig, Introduction to Robotics, 3rd ed.,
+// eq. 6.58).
+VectorXd craig(double m1, double m2, double l1, double l2, const VectorXd& t, const VectorXd& td,
+               const VectorXd& tdd) {
   const double c2 = std::cos(t(1)), s2 = std::sin(t(1)), c1 = std::cos(t(0)), c12 = std::cos(t(0) + t(1));
-  const double tau1 = m2 * l2 * l2 * (tdd(0) + tdd(1)) + m2 * l1 * l2 * c2 * (2 * tdd(0) + tdd(1)) + (m1 + m2) * l1 * l1 * tdd(0) -
-                      m2 * l1 * l2 * s2 * td(1) * td(1) - 2 * m2 * l1 * l2 * s2 * td(0) * td(1) + m2 * l2 * g * c12 +
-                      (m1 + m2) * l1 * g * c1;
-  const double tau2 = m2 * l1 * l2 * c2 * tdd(0) + m2 * l1 * l2 * s2 * td(0) * td(0) + m2 * l2 * g * c12 + m2 * l2 * l2 * (tdd(0) + tdd(1));
+  const double tau1 = m2 * l2 * l2 * (tdd(0) + tdd(1)) + m2 * l1 * l2 * c2 * (2 * tdd(0) + tdd(1)) +
+                      (m1 + m2) * l1 * l1 * tdd(0) - m2 * l1 * l2 * s2 * td(1) * td(1) -
+                      2 * m2 * l1 * l2 * s2 * td(0) * td(1) + m2 * l2 * g * c12 + (m1 + m2) * l1 * g * c1;
+  const double tau2 = m2 * l1 * l2 * c2 * tdd(0) + m2 * l1 * l2 * s2 * td(0) * td(0) + m2 * l2 * g * c12 +
+                      m2 * l2 * l2 * (tdd(0) + tdd(1));
   return vec({tau1, tau2});
 }
 
@@ -61,17 +64,20 @@ TEST(PlanarChain, TwoHingesAreTheTextbookManipulator) {
   const double m1 = 2.1, m2 = 1.3, l1 = 0.31, l2 = 0.27;
   const limb::PlanarChain chain({link(m1, l1, 0.0, l1), link(m2, l2, 0.0)});
   for (int i = 0; i < 20; ++i) {
-    const VectorXd q = VectorXd::Random(2) * 2.0, qdot = VectorXd::Random(2) * 5.0, qddot = VectorXd::Random(2) * 20.0;
+    const VectorXd q = VectorXd::Random(2) * 2.0, qdot = VectorXd::Random(2) * 5.0,
+                   qddot = VectorXd::Random(2) * 20.0;
     const VectorXd moment = chain.inverse_dynamics(q, qdot, qddot);
     EXPECT_LT((moment - craig(m1, m2, l1, l2, vec({q(0) - pi / 2, q(1)}), qdot, qddot)).norm(), 1e-12);
     EXPECT_LT((chain.forward_dynamics(q, qdot, moment) - qddot).norm(), 1e-10);
     const VectorXd wrong = vec({qdot(0), -qdot(1)});
-    EXPECT_GT((chain.inverse_dynamics(q, wrong, qddot) - moment).norm(), 1e-6) << "a wrong sign of a rate must show";
+    EXPECT_GT((chain.inverse_dynamics(q, wrong, qddot) - moment).norm(), 1e-6)
+        << "a wrong sign of a rate must show";
   }
 }
 
 TEST(PlanarChain, PassiveTripleChainKeepsItsEnergy) {
-  const limb::PlanarChain chain({link(1.9, 0.14, 0.012, 0.30), link(1.2, 0.11, 0.006, 0.25), link(0.45, 0.07, 0.001)});
+  const limb::PlanarChain chain(
+      {link(1.9, 0.14, 0.012, 0.30), link(1.2, 0.11, 0.006, 0.25), link(0.45, 0.07, 0.001)});
   VectorXd q = vec({1.2, 0.8, -0.5}), v = vec({0.5, -1.0, 2.0});
   const VectorXd none = VectorXd::Zero(3);
   const auto energy = [&] { return chain.kinetic_energy_J(q, v) + chain.potential_energy_J(q); };
@@ -106,12 +112,18 @@ TEST(PlanarChain, GravityAndForcesAreDerivativesOfTheirPotentials) {
     VectorXd up = q, down = q;
     up(j) += h;
     down(j) -= h;
-    EXPECT_NEAR(chain.gravity_moment(q, base)(j), -(chain.potential_energy_J(up, base) - chain.potential_energy_J(down, base)) / (2 * h), 1e-8);
+    EXPECT_NEAR(chain.gravity_moment(q, base)(j),
+                -(chain.potential_energy_J(up, base) - chain.potential_energy_J(down, base)) / (2 * h), 1e-8);
     EXPECT_NEAR(chain.force_moment(q, forces, base)(j), (work(up) - work(down)) / (2 * h), 1e-8);
-    EXPECT_LT((stiffness.col(j) - (chain.gravity_moment(up, base) - chain.gravity_moment(down, base)) / (2 * h)).norm(), 1e-8);
+    EXPECT_LT(
+        (stiffness.col(j) - (chain.gravity_moment(up, base) - chain.gravity_moment(down, base)) / (2 * h))
+            .norm(),
+        1e-8);
   }
-  EXPECT_LT((chain.inverse_dynamics(q, vec({0, 0}), vec({0, 0}), base, forces) + chain.gravity_moment(q, base) +
-             chain.force_moment(q, forces, base)).norm(), 1e-13);
+  EXPECT_LT((chain.inverse_dynamics(q, vec({0, 0}), vec({0, 0}), base, forces) +
+             chain.gravity_moment(q, base) + chain.force_moment(q, forces, base))
+                .norm(),
+            1e-13);
 }
 
 TEST(PlanarChain, IsBuiltFromASceneWithItsHeldLoad) {
@@ -129,7 +141,8 @@ TEST(PlanarChain, IsBuiltFromASceneWithItsHeldLoad) {
   scene.loads[0] = {"dumbbell", "wrist", 0.0, "load_mass_kg", 0.0, 0.08, 0.0, "s"};
   const limb::PlanarChain chain = limb::chain_of(scene, {{"load_mass_kg", 2.0}});
   ASSERT_EQ(chain.size(), 2u);
-  EXPECT_NEAR(chain.gravity_moment(vec({pi / 2, 0.0}))(0), -g * (1.2 * 0.11 + 0.45 * 0.32 + 2.0 * 0.33), 1e-13);
+  EXPECT_NEAR(chain.gravity_moment(vec({pi / 2, 0.0}))(0), -g * (1.2 * 0.11 + 0.45 * 0.32 + 2.0 * 0.33),
+              1e-13);
   EXPECT_NEAR(chain.gravity_moment(vec({pi / 2, 0.0}))(1), -g * (0.45 * 0.07 + 2.0 * 0.08), 1e-13);
   const auto message = [&](const std::map<std::string, double>& conditions) {
     try {
@@ -140,9 +153,11 @@ TEST(PlanarChain, IsBuiltFromASceneWithItsHeldLoad) {
     return std::string();
   };
   EXPECT_EQ(message({{"load_mas_kg", 2.0}}),
-            "error[missing-condition]: load `dumbbell` takes its mass from the condition `load_mass_kg`, which trial `curl-1` does "
+            "error[missing-condition]: load `dumbbell` takes its mass from the condition `load_mass_kg`, "
+            "which trial `curl-1` does "
             "not give\n  help: did you mean `load_mas_kg`?\n");
-  EXPECT_EQ(message({{"load_mass_kg", -1.0}}), "error[out-of-range]: the mass of `dumbbell` must be 0 kg or greater, not -1\n");
+  EXPECT_EQ(message({{"load_mass_kg", -1.0}}),
+            "error[out-of-range]: the mass of `dumbbell` must be 0 kg or greater, not -1\n");
 }
 
 TEST(PlanarChain, RefusesWhatDoesNotFit) {

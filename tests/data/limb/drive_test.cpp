@@ -13,7 +13,8 @@ data::SceneMuscle by_channel(const std::string& name, std::map<std::string, doub
   return m;
 }
 
-data::SceneMuscle by_rule(const std::string& name, const std::string& rule, std::vector<std::string> muscles) {
+data::SceneMuscle by_rule(const std::string& name, const std::string& rule,
+                          std::vector<std::string> muscles) {
   data::SceneMuscle m;
   m.name = name;
   m.drive.kind = data::MuscleDrive::Kind::rule;
@@ -41,8 +42,12 @@ TEST(DriveMap, ResolvesChannelsRulesAndRulesOfRules) {
 
 TEST(DriveMap, NamesEveryMistakeAtOnce) {
   data::Scene scene;
-  scene.muscles = {by_channel("A", {{"biseps", 1.0}}), by_rule("B", "same_as", {"C"}), by_rule("C", "same_as", {"B"}),
-                   by_rule("D", "mena_of", {"A", "B"}), by_rule("E", "same_as", {"X"}), by_rule("F", "same_as", {"G"}),
+  scene.muscles = {by_channel("A", {{"biseps", 1.0}}),
+                   by_rule("B", "same_as", {"C"}),
+                   by_rule("C", "same_as", {"B"}),
+                   by_rule("D", "mena_of", {"A", "B"}),
+                   by_rule("E", "same_as", {"X"}),
+                   by_rule("F", "same_as", {"G"}),
                    data::SceneMuscle{}};
   scene.muscles.back().name = "G";
   const std::vector<std::string> available{"biceps"};

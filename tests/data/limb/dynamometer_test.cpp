@@ -20,11 +20,13 @@ constexpr double rate = 500.0;
 
 limb::BodySet arm() {
   limb::BodySet set;
-  set.bodies = {{"forearm", 1.2, 0.11, 0.006, 0.0, 0.0, 0.0, false}, {"hand", 0.45, 0.32, 0.001, 0.0, 0.0, 0.0, false}};
+  set.bodies = {{"forearm", 1.2, 0.11, 0.006, 0.0, 0.0, 0.0, false},
+                {"hand", 0.45, 0.32, 0.001, 0.0, 0.0, 0.0, false}};
   return set;
 }
 
-// A synthetic machine whose angle counts extension from a zero of its own and whose torque is positive for extension.
+// A synthetic machine whose angle counts extension from a zero of its own and whose torque is positive for
+// extension.
 struct Machine {
   limb::DynamometerLayout layout{-1, 2.5, -1, 0.7};
   std::vector<double> angle, velocity, torque;
@@ -35,16 +37,21 @@ struct Machine {
     torque.push_back(0.7 - limb_on_machine);
   }
   limb::DynamometerRecord record(bool with_velocity, double cutoff_hz = 10.0) const {
-    return limb::joint_record(angle, with_velocity ? std::span<const double>(velocity) : std::span<const double>(), torque, rate, layout, cutoff_hz);
+    return limb::joint_record(angle,
+                              with_velocity ? std::span<const double>(velocity) : std::span<const double>(),
+                              torque, rate, layout, cutoff_hz);
   }
 };
 
 constexpr double arm_moment = 0.35;  // first moment of the machine's arm [kg m]
 
 // Moment of gravity on limb and machine arm, written out here once more.
-double gravity(double q, double inclination) { return -9.80665 * (1.2 * 0.11 + 0.45 * 0.32 + arm_moment) * std::sin(q + inclination); }
+double gravity(double q, double inclination) {
+  return -9.80665 * (1.2 * 0.11 + 0.45 * 0.32 + arm_moment) * std::sin(q + inclination);
+}
 
-// A slow sweep 10 -> 130 -> 10 deg of a relaxed limb, with measurement noise of 0.05 N m and friction of 0.2 N m.
+// A slow sweep 10 -> 130 -> 10 deg of a relaxed limb, with measurement noise of 0.05 N m and friction of 0.2
+// N m.
 Machine passive_sweep(double inclination, double noise, double friction) {
   Machine m;
   std::mt19937 random(7);
@@ -69,7 +76,8 @@ TEST(Dynamometer, PassiveSweepGivesTheGravityOfLimbAndMachineArm) {
   EXPECT_LT(clean.rms_residual_N_m, 1e-10);
   const limb::GravityModel noisy = limb::fit_gravity(passive_sweep(inclination, 0.05, 0.2).record(true));
   EXPECT_NEAR(noisy.rms_residual_N_m, std::hypot(0.05, 0.2), 0.01);
-  for (const double q : {10.0, 60.0, 130.0}) EXPECT_NEAR(noisy(q * degree), gravity(q * degree, inclination), 0.02);
+  for (const double q : {10.0, 60.0, 130.0})
+    EXPECT_NEAR(noisy(q * degree), gravity(q * degree, inclination), 0.02);
   EXPECT_GT(noisy.condition_number, 1.0);
   EXPECT_LT(noisy.condition_number, 50.0);
 }
@@ -86,7 +94,9 @@ struct Isokinetic {
     double q = 10 * degree;
     for (int i = 0; i < n; ++i) {
       const double t = i / rate;
-      const auto blend = [](double s) { return s <= 0 ? 0.0 : s >= 1 ? 1.0 : s * s * s * (10 - 15 * s + 6 * s * s); };
+      const auto blend = [](double s) {
+        return s <= 0 ? 0.0 : s >= 1 ? 1.0 : s * s * s * (10 - 15 * s + 6 * s * s);
+      };
       const auto slope = [](double s) { return s <= 0 || s >= 1 ? 0.0 : 30 * s * s * (1 - s) * (1 - s); };
       const double up = (t - rest) / ramp, down = (t - rest - ramp - run) / ramp;
       const double qdot = speed * (blend(up) - blend(down)), qddot = speed / ramp * (slope(up) - slope(down));
@@ -102,7 +112,8 @@ TEST(Dynamometer, IsokineticMomentIsRecoveredWithInertiaAndTheRampsAreExcluded) 
   const Isokinetic test(inclination);
   const limb::GravityModel g = limb::gravity_from_limb(arm(), arm_moment, inclination);
   for (const bool measured : {true, false}) {
-    const limb::DynamometerRecord record = test.machine.record(measured, 20.0);  // a ramp of 0.2 s needs more than 10 Hz
+    const limb::DynamometerRecord record =
+        test.machine.record(measured, 20.0);  // a ramp of 0.2 s needs more than 10 Hz
     EXPECT_EQ(record.velocity_measured, measured);
     const limb::DynamometerMoment with = limb::dynamometer_moment(record, g, test.inertia);
     const limb::DynamometerMoment without = limb::dynamometer_moment(record, g, 0.0);
@@ -113,7 +124,8 @@ TEST(Dynamometer, IsokineticMomentIsRecoveredWithInertiaAndTheRampsAreExcluded) 
     const VectorXd mask = limb::phase_mask(phases, test.truth.size());
     double inside_with = 0.0, inside = 0.0, ramps_with = 0.0, ramps_without = 0.0;
     for (Index i = record.edge_samples; i < test.truth.size() - record.edge_samples; ++i) {
-      const double off_with = std::abs(with.moment_N_m(i) - test.truth(i)), off_without = std::abs(without.moment_N_m(i) - test.truth(i));
+      const double off_with = std::abs(with.moment_N_m(i) - test.truth(i)),
+                   off_without = std::abs(without.moment_N_m(i) - test.truth(i));
       if (mask(i) > 0.5) {
         inside = std::max(inside, off_without);
         inside_with = std::max(inside_with, off_with);
@@ -124,8 +136,8 @@ TEST(Dynamometer, IsokineticMomentIsRecoveredWithInertiaAndTheRampsAreExcluded) 
     }
     EXPECT_LT(ramps_with, 0.10 * ramps_without) << "the inertial term must explain the ramps";
     EXPECT_GT(ramps_without, 1.0);
-    // Where the blend has reached 95 % of the speed its slope is 0.71, and 0.77 one sample before: so much of the
-    // ramps' ends the window lets in.
+    // Where the blend has reached 95 % of the speed its slope is 0.71, and 0.77 one sample before: so much of
+    // the ramps' ends the window lets in.
     EXPECT_LT(inside, 0.77 * test.inertia * Isokinetic::speed / Isokinetic::ramp);
     EXPECT_LT(inside_with, 0.1 * inside) << "the inertial term takes it out";
   }
@@ -136,12 +148,14 @@ TEST(Dynamometer, FindsIsometricHoldsAndNothingElse) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0.0, 0.1);
   const auto plateau = [](double t, double start, double end, double level) {
-    const double rise = std::min(1.0, std::max(0.0, (t - start) / 0.4)), fall = std::min(1.0, std::max(0.0, (end - t) / 0.4));
+    const double rise = std::min(1.0, std::max(0.0, (t - start) / 0.4)),
+                 fall = std::min(1.0, std::max(0.0, (end - t) / 0.4));
     return level * std::min(rise, fall);
   };
   for (int i = 0; i < static_cast<int>(16 * rate); ++i) {
     const double t = i / rate;
-    m.add(90 * degree, 0.0, plateau(t, 1, 5, 30) + plateau(t, 7, 10, -18) + plateau(t, 12, 12.9, 25) + normal(random));
+    m.add(90 * degree, 0.0,
+          plateau(t, 1, 5, 30) + plateau(t, 7, 10, -18) + plateau(t, 12, 12.9, 25) + normal(random));
   }
   const auto holds = limb::isometric_holds(m.record(false), {});
   ASSERT_EQ(holds.size(), 2u) << "the third is too short";
@@ -152,7 +166,8 @@ TEST(Dynamometer, FindsIsometricHoldsAndNothingElse) {
 }
 
 TEST(Dynamometer, AxisOffsetIsCorrectedToFirstOrder) {
-  // A pad force F normal to the machine's arm at distance l: the moment about a joint centre that lies beside the axis.
+  // A pad force F normal to the machine's arm at distance l: the moment about a joint centre that lies beside
+  // the axis.
   limb::AxisOffset axis{0.010, -0.015, 0.005, 0.28};
   for (const double q : {0.0, 0.8, 2.0}) {
     const Eigen::Vector2d r(std::cos(q), std::sin(q)), t(-r(1), r(0)), e(0.010, -0.015);
@@ -162,13 +177,16 @@ TEST(Dynamometer, AxisOffsetIsCorrectedToFirstOrder) {
     EXPECT_NEAR(axis.moment_factor(q) * torque, about_joint, 1e-12);
     const double joint_angle = std::atan2(lever(1), lever(0));
     const double second_order = e.squaredNorm() / (0.28 * 0.28);
-    EXPECT_NEAR(axis.angle_correction_rad(q), std::remainder(joint_angle - q, 2 * std::numbers::pi), second_order);
-    EXPECT_GT(std::abs(axis.angle_correction_rad(q)), 2.0 * second_order) << "the correction must exceed what it neglects";
+    EXPECT_NEAR(axis.angle_correction_rad(q), std::remainder(joint_angle - q, 2 * std::numbers::pi),
+                second_order);
+    EXPECT_GT(std::abs(axis.angle_correction_rad(q)), 2.0 * second_order)
+        << "the correction must exceed what it neglects";
   }
   EXPECT_DOUBLE_EQ(axis.moment_relative_sd(), 0.005 / 0.28);
   const Isokinetic test(0.0);
   const limb::DynamometerRecord record = test.machine.record(true);
-  const limb::DynamometerMoment m = limb::dynamometer_moment(record, limb::gravity_from_limb(arm(), arm_moment, 0.0), 0.0, axis);
+  const limb::DynamometerMoment m =
+      limb::dynamometer_moment(record, limb::gravity_from_limb(arm(), arm_moment, 0.0), 0.0, axis);
   EXPECT_NEAR(m.sd_N_m(900), 0.005 / 0.28 * std::abs(record.torque_N_m(900)), 1e-12);
 }
 
@@ -184,27 +202,39 @@ std::string message_of(const std::function<void()>& action) {
 TEST(Dynamometer, RefusesRecordsItCannotUse) {
   Machine m = passive_sweep(0.0, 0.0, 0.0);
   m.torque[77] = std::nan("");
-  EXPECT_EQ(message_of([&] { m.record(true); }), "not-finite: the dynamometer's torque is not a finite number at sample 77");
+  EXPECT_EQ(message_of([&] { m.record(true); }),
+            "not-finite: the dynamometer's torque is not a finite number at sample 77");
   m.torque.pop_back();
-  EXPECT_EQ(message_of([&] { m.record(true); }), "wrong-size: the dynamometer's record has 12000 angles, 12000 velocities and 11999 torques");
+  EXPECT_EQ(message_of([&] { m.record(true); }),
+            "wrong-size: the dynamometer's record has 12000 angles, 12000 velocities and 11999 torques");
   Machine bad = passive_sweep(0.0, 0.0, 0.0);
   bad.layout.angle_sign = 0;
-  EXPECT_EQ(message_of([&] { bad.record(true); }), "bad-layout: the dynamometer's angle sign must be 1 or -1, not 0");
+  EXPECT_EQ(message_of([&] { bad.record(true); }),
+            "bad-layout: the dynamometer's angle sign must be 1 or -1, not 0");
   Machine still;
   for (int i = 0; i < 1000; ++i) still.add(1.0 + 1e-4 * i, 0.05, 5.0);
-  EXPECT_EQ(message_of([&] { limb::fit_gravity(still.record(true)); }),
-            "short-sweep: the passive sweep covers 5.15 deg (57.58 to 62.73); the gravity fit needs 40.1 deg");
+  EXPECT_EQ(
+      message_of([&] { limb::fit_gravity(still.record(true)); }),
+      "short-sweep: the passive sweep covers 5.15 deg (57.58 to 62.73); the gravity fit needs 40.1 deg");
   limb::PassiveSweepOptions slow;
   slow.max_speed_rad_per_s = 0.01;
-  EXPECT_EQ(message_of([&] { limb::fit_gravity(still.record(true), slow); }),
-            "too-few-samples: the passive sweep has 0 samples slower than 0.573 deg/s; the gravity fit needs 10");
+  EXPECT_EQ(
+      message_of([&] { limb::fit_gravity(still.record(true), slow); }),
+      "too-few-samples: the passive sweep has 0 samples slower than 0.573 deg/s; the gravity fit needs 10");
   const limb::DynamometerRecord record = still.record(true);
-  EXPECT_EQ(message_of([&] { limb::dynamometer_moment(record, {}, -1.0); }), "out-of-range: the inertia must be 0 kg m^2 or greater, not -1");
-  EXPECT_EQ(message_of([&] { limb::dynamometer_moment(record, {}, 0.0, {0.01, 0.0, 0.0, 0.0}); }),
+  EXPECT_EQ(message_of([&] { limb::dynamometer_moment(record, {}, -1.0); }),
+            "out-of-range: the inertia must be 0 kg m^2 or greater, not -1");
+  EXPECT_EQ(message_of([&] {
+              limb::dynamometer_moment(record, {}, 0.0, {0.01, 0.0, 0.0, 0.0});
+            }),
             "missing-key: an axis offset needs the distance from the machine's axis to the pad");
-  EXPECT_EQ(message_of([&] { limb::dynamometer_moment(record, {}, 0.0, {0.1, 0.0, 0.0, 0.2}); }),
-            "out-of-range: the joint lies 100 mm beside the machine's axis, too far for a first-order correction at a pad distance of 200 mm");
-  EXPECT_EQ(message_of([&] { limb::isokinetic_phases(record, {}); }), "out-of-range: the isokinetic speed must be greater than 0, not 0");
+  EXPECT_EQ(message_of([&] {
+              limb::dynamometer_moment(record, {}, 0.0, {0.1, 0.0, 0.0, 0.2});
+            }),
+            "out-of-range: the joint lies 100 mm beside the machine's axis, too far for a first-order "
+            "correction at a pad distance of 200 mm");
+  EXPECT_EQ(message_of([&] { limb::isokinetic_phases(record, {}); }),
+            "out-of-range: the isokinetic speed must be greater than 0, not 0");
 }
 
 }  // namespace

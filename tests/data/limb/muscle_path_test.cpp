@@ -24,8 +24,8 @@ data::Coordinate elbow(double lower_deg = 0.0, double upper_deg = 150.0) {
   return c;
 }
 
-// A single-joint path with a closed form: origin at distance a above the hinge, insertion at distance b on the
-// forearm, L^2 = a^2 + b^2 + 2 a b cos q (q = 0 straight), r = -dL/dq = a b sin(q) / L.
+// A single-joint path with a closed form: origin at distance a above the hinge, insertion at distance b on
+// the forearm, L^2 = a^2 + b^2 + 2 a b cos q (q = 0 straight), r = -dL/dq = a b sin(q) / L.
 struct StraightPath {
   double a = 0.30, b = 0.04;
   double length(double q) const { return std::sqrt(a * a + b * b + 2.0 * a * b * std::cos(q)); }
@@ -68,8 +68,8 @@ Errors errors_of(const limb::MusclePath& path) {
 }
 
 TEST(MusclePath, TablesAtTenDegreesReproduceAStraightLineMuscle) {
-  // Largest moment arm 40 mm. A monotone interpolant is flattened where the moment arm peaks: allow it 0.5 % of
-  // that, the two others 0.1 %.
+  // Largest moment arm 40 mm. A monotone interpolant is flattened where the moment arm peaks: allow it 0.5 %
+  // of that, the two others 0.1 %.
   const Errors both = errors_of(limb::MusclePath("M", table(10.0, true, true), elbow()));
   EXPECT_LT(both.length, 1e-7);
   EXPECT_LT(both.arm, 0.001 * 0.04);
@@ -93,7 +93,8 @@ std::pair<double, double> difference_check(const limb::MusclePath& path, double 
   double arm = 0.0, slope = 0.0;
   for (int i = 1; i < 300; ++i) {
     const double q = (0.25 + i * 0.4963) * degree;  // steers clear of the knots, where r' may jump
-    arm = std::max(arm, std::abs(wrong_sign * path(q).moment_arm_m + (path(q + h).length_m - path(q - h).length_m) / (2 * h)));
+    arm = std::max(arm, std::abs(wrong_sign * path(q).moment_arm_m +
+                                 (path(q + h).length_m - path(q - h).length_m) / (2 * h)));
     slope = std::max(slope, std::abs(path(q).dmoment_arm_dq_m -
                                      (path(q + h).moment_arm_m - path(q - h).moment_arm_m) / (2 * h)));
   }
@@ -153,7 +154,8 @@ std::string message_of(const std::function<void()>& action) {
 TEST(MusclePath, RefusesAnAngleOutsideTheRange) {
   const limb::MusclePath path("BIClong", table(10.0, true, true), elbow());
   EXPECT_EQ(message_of([&] { path(152.3 * degree); }),
-            "angle-out-of-range: angle 152.30 deg is outside the range 0 to 150 deg of coordinate `elbow_flexion` for which "
+            "angle-out-of-range: angle 152.30 deg is outside the range 0 to 150 deg of coordinate "
+            "`elbow_flexion` for which "
             "the geometry of muscle `BIClong` holds");
   EXPECT_EQ(message_of([&] { path(std::numeric_limits<double>::quiet_NaN()); }).substr(0, 35),
             "angle-out-of-range: angle nan deg i");
@@ -163,11 +165,13 @@ TEST(MusclePath, RefusesLengthAndMomentArmThatContradictEachOther) {
   PathGeometry g = table(10.0, true, true);
   for (double& r : g.moment_arm_m) r = -r;
   EXPECT_EQ(message_of([&] { limb::MusclePath("BRA", g, elbow()); }),
-            "inconsistent-geometry: length and moment arm of muscle `BRA` disagree: at 95 deg the moment arm is -39.85 mm, but "
+            "inconsistent-geometry: length and moment arm of muscle `BRA` disagree: at 95 deg the moment arm "
+            "is -39.85 mm, but "
             "-dL/dq is 39.91 mm; they differ by 79.8 mm, more than 1 mm");
   g = table(10.0, true, true);
   g.moment_arm_m[5] += 0.004;  // a slip in one knot: seen as about half its size in the two means beside it
-  EXPECT_THAT(message_of([&] { limb::MusclePath("BRA", g, elbow()); }), ::testing::StartsWith("inconsistent-geometry"));
+  EXPECT_THAT(message_of([&] { limb::MusclePath("BRA", g, elbow()); }),
+              ::testing::StartsWith("inconsistent-geometry"));
   g.consistency_tolerance_m = 0.005;
   const limb::MusclePath tolerated("BRA", g, elbow());
   EXPECT_GT(tolerated.consistency().worst_disagreement_m, 0.0015);
@@ -185,7 +189,8 @@ TEST(MusclePath, RefusesTablesThatAreNotTables) {
   EXPECT_EQ(message_of([&] { limb::MusclePath("BRA", g, elbow()); }),
             "bad-geometry: the table of muscle `BRA` has 16 angles but 15 lengths");
   EXPECT_EQ(message_of([&] { limb::MusclePath("BRA", table(10.0, true, false), elbow(-5.0, 150.0)); }),
-            "bad-geometry: the table of muscle `BRA` covers 0 to 150 deg, less than the range -5 to 150 deg of coordinate "
+            "bad-geometry: the table of muscle `BRA` covers 0 to 150 deg, less than the range -5 to 150 deg "
+            "of coordinate "
             "`elbow_flexion`");
   g = table(10.0, true, false);
   g.length_m[2] = std::numeric_limits<double>::quiet_NaN();
@@ -199,7 +204,8 @@ TEST(MusclePath, RefusesTablesThatAreNotTables) {
             "bad-geometry: muscle `BRA` has a moment arm but neither a length nor a reference length");
   g = table(10.0, false, true);
   g.reference_length_m = 0.005;
-  EXPECT_THAT(message_of([&] { limb::MusclePath("BRA", g, elbow()); }), ::testing::StartsWith("bad-geometry: muscle `BRA` has a length of -"));
+  EXPECT_THAT(message_of([&] { limb::MusclePath("BRA", g, elbow()); }),
+              ::testing::StartsWith("bad-geometry: muscle `BRA` has a length of -"));
 }
 
 }  // namespace

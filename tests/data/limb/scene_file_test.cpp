@@ -31,7 +31,8 @@ range_deg = [0, 150]
 
 std::string muscle(const std::string& name, const std::string& drive, const std::string& more = {}) {
   return "[[muscle]]\nname = \"" + name + "\"\nsource = \"s\"\ndrive = " + drive + "\n" + more +
-         "parameters = { max_isometric_force_N = 500, optimal_fibre_length_m = 0.1, tendon_slack_length_m = 0.2 }\n"
+         "parameters = { max_isometric_force_N = 500, optimal_fibre_length_m = 0.1, tendon_slack_length_m = "
+         "0.2 }\n"
          "geometry = { length_polynomial_m = [0.35, -0.03] }\n";
 }
 
@@ -65,7 +66,9 @@ mass_condition = "load_mass_kg"
 distance_m = 0.33
 distance_sd_m = 0.02
 source = "s"
-)" + muscle("BIC", "{ channels = { biceps = 0.8, other = 0.2 } }", "group = \"flexors\"\nactivation = { delay_s = 0.05 }\n"));
+)" +
+                              muscle("BIC", "{ channels = { biceps = 0.8, other = 0.2 } }",
+                                     "group = \"flexors\"\nactivation = { delay_s = 0.05 }\n"));
   EXPECT_EQ(s.coordinate("elbow").angle_signal, "elbow");
   EXPECT_DOUBLE_EQ(s.coordinate("elbow").upper_rad, 150.0 * degree);
   ASSERT_EQ(s.segments.size(), 1u);
@@ -143,35 +146,42 @@ TEST(SceneFile, NamesWhatIsWrongWithTheFrame) {
             "error[missing-key]: `wanted` is missing in `scene`");
   EXPECT_EQ(first("[scene]\ntitle = \"t\"\nwanted = []\n[[coordinate]]\nname = \"e\"\nrange_deg = [0, 1]\n"),
             "error[out-of-range]: `wanted` must name at least one quantity");
-  EXPECT_EQ(errors("[scene]\ntitle = \"t\"\nwanted = [\"elbw.moment\"]\n[[coordinate]]\nname = \"elbow\"\nrange_deg = [0, 1]\n"),
+  EXPECT_EQ(errors("[scene]\ntitle = \"t\"\nwanted = [\"elbw.moment\"]\n[[coordinate]]\nname = "
+                   "\"elbow\"\nrange_deg = [0, 1]\n"),
             "error[unknown-quantity]: `elbw.moment` is not a quantity this scene can give\n"
             "  --> scene.toml:3:11\n"
             "  |\n"
             "3 | wanted = [\"elbw.moment\"]\n"
             "  |           ^^^^^^^^^^^^^ did you mean `elbow.moment`?\n");
-  EXPECT_EQ(first("[scene]\ntitle = \"t\"\nwanted = [\"e.moment\"]\n[[coordinate]]\nname = \"e\"\nrange_deg = [90, 10]\n"),
+  EXPECT_EQ(first("[scene]\ntitle = \"t\"\nwanted = [\"e.moment\"]\n[[coordinate]]\nname = \"e\"\nrange_deg "
+                  "= [90, 10]\n"),
             "error[out-of-range]: `range_deg` of coordinate `e` must be two increasing angles");
-  EXPECT_EQ(first("[scene]\ntitle = \"t\"\nwanted = [\"e.moment\"]\nbody_mass_kg = 0\nbody_mass_source = \"s\"\n[[coordinate]]\n"
+  EXPECT_EQ(first("[scene]\ntitle = \"t\"\nwanted = [\"e.moment\"]\nbody_mass_kg = 0\nbody_mass_source = "
+                  "\"s\"\n[[coordinate]]\n"
                   "name = \"e\"\nrange_deg = [0, 10]\n"),
             "error[out-of-range]: `body_mass_kg` of the scene must be greater than 0, not 0");
   EXPECT_EQ(first("[scene]\ntitle = \"t\"\nwanted = [\"e.moment\"]\nbody_mass_kg = 70\n[[coordinate]]\n"
                   "name = \"e\"\nrange_deg = [0, 10]\n"),
             "error[missing-key]: `body_mass_source` is missing in `scene`");
   EXPECT_EQ(first(std::string(head) + "parent = \"shoulder\"\ndistance_from_parent_m = 0.3\n"),
-            "error[unknown-coordinate]: coordinate `elbow` has the parent `shoulder`, which is not defined before it");
+            "error[unknown-coordinate]: coordinate `elbow` has the parent `shoulder`, which is not defined "
+            "before it");
   EXPECT_EQ(first(std::string(head) + "[[load]]\nname = \"l\"\ndistance_m = 0.3\nsource = \"s\"\n"),
             "error[missing-key]: load `l` needs `mass_kg` or `mass_condition`");
-  EXPECT_EQ(first(std::string(head) + "[[load]]\nname = \"l\"\nmass_kg = -2\ndistance_m = 0.3\nsource = \"s\"\n"),
-            "error[out-of-range]: `mass_kg` of load `l` must be 0 or greater, not -2");
+  EXPECT_EQ(
+      first(std::string(head) + "[[load]]\nname = \"l\"\nmass_kg = -2\ndistance_m = 0.3\nsource = \"s\"\n"),
+      "error[out-of-range]: `mass_kg` of load `l` must be 0 or greater, not -2");
   EXPECT_EQ(first("[scene\n").substr(0, 19), "error[toml-syntax]:");
-  EXPECT_EQ([] {
-    try {
-      io::read_scene("no/such/scene.toml");
-    } catch (const data::InputError& e) {
-      return data::render(e.diagnostics());
-    }
-    return std::string();
-  }(), "error[missing-file]: cannot read the scene `no/such/scene.toml`\n  help: check the path\n");
+  EXPECT_EQ(
+      [] {
+        try {
+          io::read_scene("no/such/scene.toml");
+        } catch (const data::InputError& e) {
+          return data::render(e.diagnostics());
+        }
+        return std::string();
+      }(),
+      "error[missing-file]: cannot read the scene `no/such/scene.toml`\n  help: check the path\n");
 }
 
 TEST(SceneFile, NamesWhatIsWrongWithAMuscle) {
@@ -183,8 +193,10 @@ TEST(SceneFile, NamesWhatIsWrongWithAMuscle) {
     return text.replace(at, what.size(), by);
   };
   EXPECT_EQ(first(std::string(head) + good + good), "error[duplicate-muscle]: muscle `BIC` is defined twice");
-  EXPECT_EQ(first(with("source = \"s\"\ndrive", "drive")), "error[missing-key]: `source` is missing in [[muscle]]");
-  EXPECT_EQ(first(with("= 500", "= 0")), "error[out-of-range]: `max_isometric_force_N` of muscle `BIC` must be greater than 0, not 0");
+  EXPECT_EQ(first(with("source = \"s\"\ndrive", "drive")),
+            "error[missing-key]: `source` is missing in [[muscle]]");
+  EXPECT_EQ(first(with("= 500", "= 0")),
+            "error[out-of-range]: `max_isometric_force_N` of muscle `BIC` must be greater than 0, not 0");
   EXPECT_EQ(first(with("optimal_fibre_length_m = 0.1", "optimal_fibre_length_m = nan")),
             "error[out-of-range]: `optimal_fibre_length_m` must be a finite number");
   EXPECT_EQ(first(with("= 0.2 }", "= 0.2, pennation_at_optimal_deg = 90 }")),
@@ -195,22 +207,29 @@ TEST(SceneFile, NamesWhatIsWrongWithAMuscle) {
             "error[out-of-range]: `shape` of muscle `BIC` must be above -3 and at most 0.12, not -3");
   EXPECT_EQ(first(with("geometry", "activation = { delay_s = -0.01 }\ngeometry")),
             "error[out-of-range]: `delay_s` of muscle `BIC` must be 0 or greater, not -0.01");
-  EXPECT_EQ(first(with("length_polynomial_m = [0.35, -0.03]", "")), "error[missing-key]: the geometry of muscle `BIC` must be given in one way");
+  EXPECT_EQ(first(with("length_polynomial_m = [0.35, -0.03]", "")),
+            "error[missing-key]: the geometry of muscle `BIC` must be given in one way");
   EXPECT_EQ(first(with("-0.03]", "-0.03], moment_arm_polynomial_m = [0.04]")),
-            "error[inconsistent-geometry]: length and moment arm of muscle `BIC` disagree: at 0 deg the moment arm is 40 mm, but "
+            "error[inconsistent-geometry]: length and moment arm of muscle `BIC` disagree: at 0 deg the "
+            "moment arm is 40 mm, but "
             "-dL/dq is 30 mm; they differ by 10 mm, more than 1 mm");
-  EXPECT_EQ(first(with("length_polynomial_m = [0.35, -0.03]", "angle_deg = [10, 150], length_m = [0.3, 0.28]")),
-            "error[bad-geometry]: the table of muscle `BIC` covers 10 to 150 deg, less than the range 0 to 150 deg of coordinate "
-            "`elbow`");
-  EXPECT_EQ(first(with("{ channels = { biceps = 1 } }", "{ }")), "error[missing-key]: the drive of muscle `BIC` must be given in one way");
+  EXPECT_EQ(
+      first(with("length_polynomial_m = [0.35, -0.03]", "angle_deg = [10, 150], length_m = [0.3, 0.28]")),
+      "error[bad-geometry]: the table of muscle `BIC` covers 10 to 150 deg, less than the range 0 to 150 deg "
+      "of coordinate "
+      "`elbow`");
+  EXPECT_EQ(first(with("{ channels = { biceps = 1 } }", "{ }")),
+            "error[missing-key]: the drive of muscle `BIC` must be given in one way");
   EXPECT_EQ(first(with("{ channels = { biceps = 1 } }", "{ same_as = \"X\", none = \"deep\" }")),
             "error[contradiction]: the drive of muscle `BIC` must be given in one way");
-  EXPECT_EQ(first(with("biceps = 1", "biceps = -1")),
-            "error[out-of-range]: the weight of channel `biceps` for muscle `BIC` must be 0 or greater, not -1");
+  EXPECT_EQ(
+      first(with("biceps = 1", "biceps = -1")),
+      "error[out-of-range]: the weight of channel `biceps` for muscle `BIC` must be 0 or greater, not -1");
 }
 
 TEST(SceneFile, NamesUnmappedChannelsUnknownRuleMusclesAndCyclesWhereTheyStand) {
-  const std::string text = std::string(head) + muscle("BIC", "{ channels = { biseps = 1 } }") + muscle("BRA", "{ mean_of = [\"BIC\", \"BRX\"] }") +
+  const std::string text = std::string(head) + muscle("BIC", "{ channels = { biseps = 1 } }") +
+                           muscle("BRA", "{ mean_of = [\"BIC\", \"BRX\"] }") +
                            muscle("A", "{ same_as = \"B\" }") + muscle("B", "{ same_as = \"A\" }");
   EXPECT_EQ(errors(text, {"biceps", "triceps"}),
             "error[unmapped-channel]: muscle `BIC` is driven by channel `biseps`, which is not recorded\n"
@@ -232,33 +251,42 @@ TEST(SceneFile, NamesUnmappedChannelsUnknownRuleMusclesAndCyclesWhereTheyStand) 
 
 TEST(SceneFile, LeavesOutWhatNoWantedQuantityDependsOnAndSaysSo) {
   std::string text = head;
-  text += "[[coordinate]]\nname = \"wrist\"\nrange_deg = [-60, 60]\nparent = \"elbow\"\ndistance_from_parent_m = 0.25\n"
-          "[[coordinate]]\nname = \"knee\"\nrange_deg = [0, 90]\n"
-          "[[segment]]\nname = \"hand\"\ncoordinate = \"wrist\"\nmass_kg = 0.4\ncentre_of_mass_m = 0.07\ninertia_kg_m2 = 0.001\nsource = \"s\"\n"
-          "[[segment]]\nname = \"shank\"\ncoordinate = \"knee\"\nmass_kg = 3\ncentre_of_mass_m = 0.2\ninertia_kg_m2 = 0.05\nsource = \"s\"\n";
+  text +=
+      "[[coordinate]]\nname = \"wrist\"\nrange_deg = [-60, 60]\nparent = \"elbow\"\ndistance_from_parent_m = "
+      "0.25\n"
+      "[[coordinate]]\nname = \"knee\"\nrange_deg = [0, 90]\n"
+      "[[segment]]\nname = \"hand\"\ncoordinate = \"wrist\"\nmass_kg = 0.4\ncentre_of_mass_m = "
+      "0.07\ninertia_kg_m2 = 0.001\nsource = \"s\"\n"
+      "[[segment]]\nname = \"shank\"\ncoordinate = \"knee\"\nmass_kg = 3\ncentre_of_mass_m = "
+      "0.2\ninertia_kg_m2 = 0.05\nsource = \"s\"\n";
   const auto on = [](std::string m, const std::string& coordinate) {
     const std::string key = "geometry = { ";
     return m.replace(m.find(key), key.size(), key + "coordinate = \"" + coordinate + "\", ");
   };
-  text += on(muscle("BIC", "{ same_as = \"FCR\" }"), "elbow") + on(muscle("FCR", "{ channels = { c = 1 } }"), "wrist") +
-          on(muscle("ECR", "{ channels = { d = 1 } }"), "wrist") + on(muscle("ANC", "{ none = \"too deep for surface EMG\" }"), "elbow") +
+  text += on(muscle("BIC", "{ same_as = \"FCR\" }"), "elbow") +
+          on(muscle("FCR", "{ channels = { c = 1 } }"), "wrist") +
+          on(muscle("ECR", "{ channels = { d = 1 } }"), "wrist") +
+          on(muscle("ANC", "{ none = \"too deep for surface EMG\" }"), "elbow") +
           on(muscle("VAS", "{ channels = { e = 1 } }"), "knee");
   const data::Scene s = parse(text);
   std::vector<std::string> notes;
   for (const auto& n : s.notes) notes.push_back(n.code + ": " + n.message);
-  EXPECT_EQ(notes, (std::vector<std::string>{
-                       "left-out: muscle `ECR` is left out: no wanted quantity (elbow.moment) depends on it",
-                       "left-out: muscle `VAS` is left out: no wanted quantity (elbow.moment) depends on it",
-                       "left-out: segment `shank` is left out: no wanted quantity (elbow.moment) depends on it",
-                       "left-out: coordinate `knee` is left out: no wanted quantity (elbow.moment) depends on it",
-                       "undriven-muscle: muscle `ANC` has no drive and is modelled as passive: too deep for surface EMG"}));
+  EXPECT_EQ(notes,
+            (std::vector<std::string>{
+                "left-out: muscle `ECR` is left out: no wanted quantity (elbow.moment) depends on it",
+                "left-out: muscle `VAS` is left out: no wanted quantity (elbow.moment) depends on it",
+                "left-out: segment `shank` is left out: no wanted quantity (elbow.moment) depends on it",
+                "left-out: coordinate `knee` is left out: no wanted quantity (elbow.moment) depends on it",
+                "undriven-muscle: muscle `ANC` has no drive and is modelled as passive: too deep for surface "
+                "EMG"}));
   EXPECT_EQ(s.muscles.size(), 3u) << "FCR stays: the rule of BIC needs it";
   EXPECT_EQ(s.segments.size(), 1u) << "the hand hangs on the elbow";
 }
 
 TEST(SceneFile, ReadsGeometryFromACsvBesideTheScene) {
   const auto dir = tests::scratch_dir();
-  std::ofstream(dir / "bic.csv") << "\xEF\xBB\xBF# a comment\r\nangle_deg,moment_arm_mm\r\n0,10\r\n75,40\r\n150,20\r\n";
+  std::ofstream(dir / "bic.csv")
+      << "\xEF\xBB\xBF# a comment\r\nangle_deg,moment_arm_mm\r\n0,10\r\n75,40\r\n150,20\r\n";
   std::ofstream(dir / "bad.csv") << "angle_deg,length_m\n0,0.3\n90,x\n";
   std::ofstream(dir / "short.csv") << "angle_deg,length_m\n0\n";
   std::ofstream(dir / "column.csv") << "angle_deg,lenght_m\n0,0.3\n";
@@ -266,11 +294,13 @@ TEST(SceneFile, ReadsGeometryFromACsvBesideTheScene) {
   const auto text = [](const std::string& file) {
     std::string m = muscle("BIC", "{ channels = { c = 1 } }");
     const std::string key = "length_polynomial_m = [0.35, -0.03]";
-    return head + m.replace(m.find(key), key.size(), "csv = \"" + file + "\", reference_length_m = 0.38, reference_angle_deg = 0");
+    return head + m.replace(m.find(key), key.size(),
+                            "csv = \"" + file + "\", reference_length_m = 0.38, reference_angle_deg = 0");
   };
   const data::Scene s = io::parse_scene(text("bic.csv"), "scene.toml", dir);
   EXPECT_EQ(s.muscle("BIC").path.moment_arm_m, (std::vector<double>{0.010, 0.040, 0.020}));
-  EXPECT_DOUBLE_EQ(limb::MusclePath("BIC", s.muscle("BIC").path, s.coordinate("elbow"))(75.0 * degree).moment_arm_m, 0.04);
+  EXPECT_DOUBLE_EQ(
+      limb::MusclePath("BIC", s.muscle("BIC").path, s.coordinate("elbow"))(75.0 * degree).moment_arm_m, 0.04);
   const auto message = [&](const std::string& file) {
     try {
       io::parse_scene(text(file), "scene.toml", dir);
@@ -283,8 +313,10 @@ TEST(SceneFile, ReadsGeometryFromACsvBesideTheScene) {
   EXPECT_EQ(message("bad.csv"), "not-a-number:3: `x` in column `length_m` is not a finite number");
   EXPECT_EQ(message("short.csv"), "truncated:2: a row of 1 cells under 2 columns");
   EXPECT_EQ(message("column.csv"), "unknown-column:1: `lenght_m` is not a column of a geometry table");
-  EXPECT_EQ(message("empty.csv"), fmt::format("empty-file:0: the geometry table `{}` has no angles", (dir / "empty.csv").string()));
-  EXPECT_EQ(message("none.csv"), fmt::format("missing-file:14: cannot read the geometry table `{}`", (dir / "none.csv").string()));
+  EXPECT_EQ(message("empty.csv"),
+            fmt::format("empty-file:0: the geometry table `{}` has no angles", (dir / "empty.csv").string()));
+  EXPECT_EQ(message("none.csv"),
+            fmt::format("missing-file:14: cannot read the geometry table `{}`", (dir / "none.csv").string()));
 }
 
 TEST(SceneFile, ShippedScenesAreValidConsistentAndSurviveBeingWrittenAndReadAgain) {
@@ -300,7 +332,8 @@ TEST(SceneFile, ShippedScenesAreValidConsistentAndSurviveBeingWrittenAndReadAgai
       const limb::MusclePath after(again.muscles[i].name, again.muscles[i].path, again.coordinates[0]);
       EXPECT_LT(before.consistency().worst_disagreement_m, 1e-9);
       EXPECT_EQ(before(1.0).length_m, after(1.0).length_m);
-      EXPECT_NEAR(s.muscles[i].parameters.pennation_at_optimal_rad, again.muscles[i].parameters.pennation_at_optimal_rad, 1e-12);
+      EXPECT_NEAR(s.muscles[i].parameters.pennation_at_optimal_rad,
+                  again.muscles[i].parameters.pennation_at_optimal_rad, 1e-12);
     }
     ASSERT_EQ(again.segments.size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -311,7 +344,10 @@ TEST(SceneFile, ShippedScenesAreValidConsistentAndSurviveBeingWrittenAndReadAgai
     EXPECT_TRUE(limb::drive_map(s).undriven.empty());
   }
   const std::vector<std::string> recorded{"biceps", "brachioradialis", "triceps_lateral"};
-  EXPECT_EQ(limb::drive_map(io::read_scene(tests::source_dir() / "pipelines/scenes/elbow.toml", recorded), recorded).channels, recorded);
+  EXPECT_EQ(
+      limb::drive_map(io::read_scene(tests::source_dir() / "pipelines/scenes/elbow.toml", recorded), recorded)
+          .channels,
+      recorded);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ TEST(Smoothing, EqualsScipysZeroLagFilter) {
 TEST(Smoothing, GainOfBothPassesAtTheCutoffIsHalfPowerAndThereIsNoLag) {
   for (const double cutoff : {1.0, 6.0, 20.0}) {
     std::vector<double> x(20000);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::sin(2 * pi * cutoff * static_cast<double>(i) / 200.0);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = std::sin(2 * pi * cutoff * static_cast<double>(i) / 200.0);
     const std::vector<double> y = limb::smooth(x, {cutoff, 200.0}, "x");
     for (std::size_t i = 9900; i < 10100; ++i) EXPECT_NEAR(y[i], x[i] / std::numbers::sqrt2, 1e-10);
   }
@@ -44,7 +45,8 @@ TEST(Smoothing, DerivativeIsOfFourthOrderUpToTheEnds) {
     for (std::size_t i = 0; i < n; ++i) x[i] = std::sin(3.0 * static_cast<double>(i) / rate);
     const std::vector<double> d = limb::derivative(x, rate);
     double error = 0.0;
-    for (std::size_t i = 0; i < n; ++i) error = std::max(error, std::abs(d[i] - 3.0 * std::cos(3.0 * static_cast<double>(i) / rate)));
+    for (std::size_t i = 0; i < n; ++i)
+      error = std::max(error, std::abs(d[i] - 3.0 * std::cos(3.0 * static_cast<double>(i) / rate)));
     return error;
   };
   EXPECT_NEAR(std::log2(worst(101) / worst(201)), 4.0, 0.1);
@@ -62,10 +64,13 @@ std::string message_of(const std::vector<double>& x, limb::Smoothing s) {
 TEST(Smoothing, RefusesWhatItCannotSmooth) {
   std::vector<double> x(200, 1.0);
   EXPECT_EQ(message_of(x, {120.0, 200.0}),
-            "cutoff-above-nyquist: the cut-off 120 Hz for the elbow angle must lie above 0 and below 0.45 of its rate 200 Hz");
-  EXPECT_EQ(message_of(x, {1.0, 200.0}), "trial-too-short: the elbow angle has 200 samples; smoothing at 1 Hz needs more than 400");
+            "cutoff-above-nyquist: the cut-off 120 Hz for the elbow angle must lie above 0 and below 0.45 of "
+            "its rate 200 Hz");
+  EXPECT_EQ(message_of(x, {1.0, 200.0}),
+            "trial-too-short: the elbow angle has 200 samples; smoothing at 1 Hz needs more than 400");
   x[50] = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(message_of(x, {10.0, 200.0}), "not-finite: the elbow angle is not a finite number at sample 50 (0.25 s)");
+  EXPECT_EQ(message_of(x, {10.0, 200.0}),
+            "not-finite: the elbow angle is not a finite number at sample 50 (0.25 s)");
 }
 
 }  // namespace

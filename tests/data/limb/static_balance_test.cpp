@@ -31,11 +31,13 @@ TEST(StaticBalance, FindsRootsBetweenScanPointsAndOnesThatOnlyTouch) {
   limb::BalanceOptions coarse;
   coarse.scan_points = 11;
   // Two roots 0.02 rad apart inside one step of 0.1 rad.
-  const limb::Balance two = limb::balance_of([](double q) { return (q - 0.44) * (q - 0.46); }, 0.0, 1.0, coarse);
+  const limb::Balance two =
+      limb::balance_of([](double q) { return (q - 0.44) * (q - 0.46); }, 0.0, 1.0, coarse);
   ASSERT_EQ(two.equilibria.size(), 2u);
   EXPECT_NEAR(two.equilibria[0].angle_rad, 0.44, 1e-9);
   EXPECT_NEAR(two.equilibria[1].angle_rad, 0.46, 1e-9);
-  const limb::Balance touching = limb::balance_of([](double q) { return (q - 0.45) * (q - 0.45); }, 0.0, 1.0, coarse);
+  const limb::Balance touching =
+      limb::balance_of([](double q) { return (q - 0.45) * (q - 0.45); }, 0.0, 1.0, coarse);
   ASSERT_EQ(touching.equilibria.size(), 1u);
   EXPECT_NEAR(touching.equilibria[0].angle_rad, 0.45, 1e-4);
 }
@@ -47,17 +49,18 @@ TEST(StaticBalance, NoneInRangeIsAResultWithTheNearestAngle) {
   EXPECT_NEAR(b.nearest.residual_N_m, 0.5, 1e-7);
 }
 
-// The published elbow of the continuum model (extension positive there): lever arms [mm] over theta [deg] with the
-// forces at 10 ... 150 deg, joined by a spline.
+// The published elbow of the continuum model (extension positive there): lever arms [mm] over theta [deg]
+// with the forces at 10 ... 150 deg, joined by a spline.
 class PublishedElbow final : public limb::MuscleModel {
  public:
   const limb::ModelTraits& traits() const override { return traits_; }
   const std::vector<std::string>& coordinates() const override { return coordinates_; }
   const std::vector<std::string>& muscles() const override { return muscles_; }
-  void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd&, const Eigen::VectorXd& a, const Eigen::VectorXd&,
-                limb::Evaluation& out) const override {
+  void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd&, const Eigen::VectorXd& a,
+                const Eigen::VectorXd&, limb::Evaluation& out) const override {
     const double t = q(0) / degree;
-    const double lt = (-0.0009399 * t * t + 0.1126 * t + 22.21) * 1e-3, lb = (-0.001482 * t * t + 0.1776 * t + 35.02) * 1e-3;
+    const double lt = (-0.0009399 * t * t + 0.1126 * t + 22.21) * 1e-3,
+                 lb = (-0.001482 * t * t + 0.1776 * t + 35.02) * 1e-3;
     out.force.resize(2);
     out.force << at(t, triceps, triceps_full, a(0)), at(t, biceps, biceps_full, a(1));
     out.moment_arm.resize(1, 2);
@@ -68,7 +71,8 @@ class PublishedElbow final : public limb::MuscleModel {
  private:
   using Samples = std::array<double, 7>;
   static double at(double t, const Samples& rest, const Samples& full, double a) {
-    return (1.0 - a) * data::PiecewiseCubic::forsythe(angles, rest)(t).value + a * data::PiecewiseCubic::forsythe(angles, full)(t).value;
+    return (1.0 - a) * data::PiecewiseCubic::forsythe(angles, rest)(t).value +
+           a * data::PiecewiseCubic::forsythe(angles, full)(t).value;
   }
   static constexpr Samples angles{10, 45, 60, 80, 90, 115, 150};
   static constexpr Samples triceps{24.5, 157.2, 242.8, 368.6, 424.8, 499.6, 452.7};
@@ -84,8 +88,9 @@ TEST(StaticBalance, ReproducesThePublishedEquilibriaOfTheContinuumElbow) {
   const auto angle = [&](double triceps, double biceps, double load) {
     Eigen::VectorXd a(2), q = Eigen::VectorXd::Zero(1);
     a << triceps, biceps;
-    const auto b = limb::static_balance(elbow, a, [load](const Eigen::VectorXd& x) { return -load * 0.2825 * std::sin(x(0)); }, q,
-                                        10.0 * degree, 150.0 * degree);
+    const auto b = limb::static_balance(
+        elbow, a, [load](const Eigen::VectorXd& x) { return -load * 0.2825 * std::sin(x(0)); }, q,
+        10.0 * degree, 150.0 * degree);
     EXPECT_EQ(b.equilibria.size(), 1u);
     EXPECT_TRUE(b.equilibria.empty() || b.equilibria[0].stable);
     return b.equilibria.empty() ? 0.0 : b.equilibria[0].angle_rad / degree;
@@ -101,8 +106,9 @@ TEST(StaticBalance, ReproducesThePublishedEquilibriaOfTheContinuumElbow) {
   EXPECT_NEAR(angle(1, 1, 22), 52.7, 1.0);
   Eigen::VectorXd a(2), q = Eigen::VectorXd::Zero(1);
   a << 1.0, 0.0;
-  const auto none = limb::static_balance(elbow, a, [](const Eigen::VectorXd& x) { return -180.0 * 0.2825 * std::sin(x(0)); }, q,
-                                         10.0 * degree, 150.0 * degree);
+  const auto none = limb::static_balance(
+      elbow, a, [](const Eigen::VectorXd& x) { return -180.0 * 0.2825 * std::sin(x(0)); }, q, 10.0 * degree,
+      150.0 * degree);
   EXPECT_TRUE(none.equilibria.empty()) << "the reference has none for 180 N at (1, 0)";
 }
 
