@@ -35,7 +35,7 @@ struct PathTrace {
 /// What became of a frame.
 enum class FrameStatus : std::uint8_t {
   ok,
-  unloaded,  ///< the fibres would push, or carry nothing: the tendon is not taut, force 0
+  unloaded,  ///< the fibres would push: the tendon is not taut, force 0
   slack      ///< the path is too short for the slack tendon and the shortest fibre: force 0
 };
 std::string to_string(FrameStatus status);
