@@ -83,6 +83,11 @@ void run_levenberg_marquardt(Objective& objective, const SolveOptions& options, 
   log();
   result.reason = "iteration limit reached";
   while (result.iterations < options.max_iterations && objective.evaluations() < options.max_evaluations) {
+    if (cost <= 0.5e-26 * static_cast<double>(r.size())) {  // root mean square of the scaled residuals 1e-13
+      result.converged = true;
+      result.reason = "residuals at rounding";
+      break;
+    }
     D = D.cwiseMax(A.diagonal());
     const double floor = 1e-12 * std::max(D.maxCoeff(), 1e-300);
     const double gradient_scale = std::sqrt(2.0 * cost) * std::sqrt(std::max(A.diagonal().maxCoeff(), 1e-300));

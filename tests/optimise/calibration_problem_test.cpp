@@ -73,7 +73,7 @@ TEST_P(WholeChain, HasExactDerivativesInEveryParameter) {
 INSTANTIATE_TEST_SUITE_P(Models, WholeChain,
                          ::testing::Values(Case{"rigid", hill::TendonKind::rigid, false}, Case{"elastic", hill::TendonKind::elastic, false},
                                            Case{"rigid_recursive", hill::TendonKind::rigid, true}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 TEST(CalibrationProblem, ResidualsVanishAtTheTruth) {
   const CalibrationProblem problem(elbow(), trials(), everything_free());

@@ -61,7 +61,7 @@ TEST_P(NoiseFreeTwin, GivesEveryIdentifiableParameterToAMillionth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tendons, NoiseFreeTwin, ::testing::Values(hill::TendonKind::rigid, hill::TendonKind::elastic),
-                         [](const auto& info) { return hill::to_string(info.param); });
+                         [](const auto& one) { return hill::to_string(one.param); });
 
 TEST(Calibration, LinearStrengthFitAloneFindsTheStrengths) {
   data::Scene start = elbow();

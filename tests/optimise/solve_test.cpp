@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
                          ::testing::Values(Solver::levenberg_marquardt, Solver::gsl_levenberg_marquardt, Solver::slsqp,
                                            Solver::lbfgs, Solver::mma, Solver::bobyqa, Solver::subplex, Solver::crs2, Solver::isres,
                                            Solver::mlsl),
-                         [](const auto& info) { return to_string(info.param); });
+                         [](const auto& one) { return to_string(one.param); });
 
 TEST(Solve, OwnAndGslLevenbergMarquardtAgreeOnADisturbedDecay) {
   const Summary own = solve(decay(), with(Solver::levenberg_marquardt));

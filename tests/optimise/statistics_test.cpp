@@ -3,6 +3,8 @@
 #include <gsl/gsl_multifit_nlinear.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <cmath>
 
 #include "emg/random.hpp"

@@ -38,7 +38,7 @@ inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth, 
   // One long record of the electrode at full effort and one at rest: the unit, and the floor, without error.
   static const std::pair<double, double> levels = [&] {
     emg::SyntheticEmgOptions clean = electrode;
-    clean.sensor_noise = false;
+    clean.snr_db.reset();
     clean.seed = 987;
     emg::OutputLayout layout;
     const double at_one = mean(envelope(emg::synthesise_emg(std::vector<double>(60000, 1.0), 200.0, clean).raw, layout));
@@ -103,7 +103,6 @@ inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t
   }
   options.motion_rate_hz = options.excitation_rate_hz = 100.0;
   emg::SyntheticEmgOptions electrode;
-  electrode.sensor_noise = true;
   electrode.snr_db = 20.0;
   const Twin twin = make_twin(scene, options);
   std::vector<CalibrationTrial> trials = noise_free_trials(twin, scene.coordinates[0].name);
