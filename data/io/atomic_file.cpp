@@ -53,8 +53,8 @@ void remove_leftovers(const std::filesystem::path& folder, const std::string& pr
   }
 }
 
-// A rename survives a power cut only once the folder itself is on the disk. Some file systems cannot flush folders;
-// the rename is then as durable as they make it.
+// A rename survives a power cut only once the folder itself is on the disk. Some file systems cannot flush
+// folders; the rename is then as durable as they make it.
 void flush_folder(const std::filesystem::path& folder) {
   const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (handle < 0) return;
@@ -69,11 +69,14 @@ AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)
   const std::filesystem::path folder = folder_of(target_);
   std::error_code ignored;
   if (target_.filename().empty() || std::filesystem::is_directory(target_, ignored)) {
-    throw InputError("bad-path", fmt::format("`{}` is a folder, not a file that can be written", target_.string()));
+    throw InputError("bad-path",
+                     fmt::format("`{}` is a folder, not a file that can be written", target_.string()));
   }
   if (!std::filesystem::is_directory(folder, ignored)) {
-    throw InputError("missing-folder", fmt::format("cannot write `{}`: there is no folder `{}`", target_.string(), folder.string()),
-                     "make the folder first");
+    throw InputError(
+        "missing-folder",
+        fmt::format("cannot write `{}`: there is no folder `{}`", target_.string(), folder.string()),
+        "make the folder first");
   }
   const std::string prefix = fmt::format(".{}.partial-{}-", target_.filename().string(), host_name());
   remove_leftovers(folder, prefix);
@@ -134,7 +137,8 @@ std::string read_text(const std::filesystem::path& file) {
   std::error_code ignored;
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file, ignored)) {
-    throw InputError("missing-file", fmt::format("cannot read `{}`", file.string()), "check the path and its permissions");
+    throw InputError("missing-file", fmt::format("cannot read `{}`", file.string()),
+                     "check the path and its permissions");
   }
   std::ostringstream text;
   text << stream.rdbuf();

@@ -1,14 +1,15 @@
 #pragma once
-/// Files that are either the old ones or the whole new ones: written under a temporary name in the same folder,
-/// flushed to the disk, then renamed.
+/// Files that are either the old ones or the whole new ones: written under a temporary name in the same
+/// folder, flushed to the disk, then renamed.
 
 #include <filesystem>
 #include <string>
 
 namespace brachium::io {
 
-/// Owns a temporary name beside `target`. commit() flushes and renames; without it the destructor removes the file.
-/// The temporary name is `.<target>.partial-<process id>-<counter>`: nothing that reads results matches it.
+/// Owns a temporary name beside `target`. commit() flushes and renames; without it the destructor removes the
+/// file. The temporary name is `.<target>.partial-<host>-<process id>-<counter>`: nothing that reads results
+/// matches it.
 class AtomicFile {
  public:
   /// Throws InputError("missing-folder" | "read-only-folder") if the target's folder cannot take a new file.
@@ -20,7 +21,8 @@ class AtomicFile {
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& temporary() const { return temporary_; }
 
-  /// Call when the temporary file is written and closed. Throws InputError("write-failed") with the system's reason.
+  /// Call when the temporary file is written and closed. Throws InputError("write-failed") with the system's
+  /// reason.
   void commit();
 
  private:

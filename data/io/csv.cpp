@@ -23,10 +23,12 @@ char delimiter_of(const std::string& name) {
   if (name == "whitespace") return ' ';
   if (name == "tab") return '\t';
   if (name.size() == 1 && name != "\"" && name != " ") return name[0];
-  throw InputError("bad-layout", fmt::format("`{}` cannot be a delimiter", name), "one character, \"tab\" or \"whitespace\"");
+  throw InputError("bad-layout", fmt::format("`{}` cannot be a delimiter", name),
+                   "one character, \"tab\" or \"whitespace\"");
 }
 
-/// "emg1 (uV)" or "emg1 [uV]" as spreadsheets write it: name and unit, where what stands in brackets is a unit.
+/// "emg1 (uV)" or "emg1 [uV]" as spreadsheets write it: name and unit, where what stands in brackets is a
+/// unit.
 void split_unit(RecordingColumn& column) {
   const std::string& name = column.name;
   if (!column.unit.empty() || name.empty() || (name.back() != ')' && name.back() != ']')) return;
@@ -45,11 +47,12 @@ void split_unit(RecordingColumn& column) {
 
 struct HeaderRows {
   std::vector<std::string> names, units, first_data;
-  std::size_t first_line = 1;       // of the data
+  std::size_t first_line = 1;  // of the data
   std::uintmax_t first_byte = 0;
 };
 
-HeaderRows read_header(const std::filesystem::path& file, const CsvLayout& layout, std::size_t first_data_row) {
+HeaderRows read_header(const std::filesystem::path& file, const CsvLayout& layout,
+                       std::size_t first_data_row) {
   TextLines lines(file);
   HeaderRows rows;
   std::string_view line;
@@ -66,9 +69,11 @@ HeaderRows read_header(const std::filesystem::path& file, const CsvLayout& layou
     return rows;
   }
   if (layout.header_row && row < *layout.header_row) {
-    throw InputError("bad-layout", fmt::format("`{}` has {} rows, but its header should stand in row {}", file.string(), row, *layout.header_row));
+    throw InputError("bad-layout", fmt::format("`{}` has {} rows, but its header should stand in row {}",
+                                               file.string(), row, *layout.header_row));
   }
-  throw InputError("empty-recording", fmt::format("`{}` has a header but no samples", file.string()), "export the recording again");
+  throw InputError("empty-recording", fmt::format("`{}` has a header but no samples", file.string()),
+                   "export the recording again");
 }
 
 }  // namespace
@@ -114,9 +119,9 @@ Recording open_csv(const std::filesystem::path& file, const CsvLayout& layout) {
   format.delimiter = delimiter_of(layout.delimiter);
   format.decimal_comma = layout.decimal_comma;
   format.comment = layout.comment;
-  format.allow_non_finite = layout.allow_non_finite;
   if (layout.decimal_comma && format.delimiter == ',') {
-    throw InputError("bad-layout", "`decimal_comma` needs a delimiter other than `,`", "say `delimiter = \";\"` or \"tab\"");
+    throw InputError("bad-layout", "`decimal_comma` needs a delimiter other than `,`",
+                     "say `delimiter = \";\"` or \"tab\"");
   }
   std::size_t first_data_row = layout.skip_rows + 1;
   CsvLayout placed = layout;
@@ -139,10 +144,12 @@ Recording open_csv(const std::filesystem::path& file, const CsvLayout& layout) {
   for (std::size_t field = 0; field < names.size(); ++field) {
     RecordingColumn column{names[field], field < rows.units.size() ? rows.units[field] : ""};
     split_unit(column);
-    const bool is_time = !layout.time_column.empty() && (column.name == layout.time_column || names[field] == layout.time_column);
+    const bool is_time = !layout.time_column.empty() &&
+                         (column.name == layout.time_column || names[field] == layout.time_column);
     if (column.name.empty()) continue;  // a column without a name cannot be asked for
     if (!seen.emplace(column.name, field).second) {
-      throw InputError("duplicate-column", fmt::format("`{}` has two columns `{}`", file.string(), column.name),
+      throw InputError("duplicate-column",
+                       fmt::format("`{}` has two columns `{}`", file.string(), column.name),
                        "give the columns names of their own, or say `header_row = 0` and use their numbers");
     }
     if (is_time) {
@@ -155,7 +162,8 @@ Recording open_csv(const std::filesystem::path& file, const CsvLayout& layout) {
     format.value_fields.push_back(field);
   }
   if (!layout.time_column.empty() && !header.has_time) {
-    throw InputError("missing-column", fmt::format("`{}` has no time column `{}`", file.string(), layout.time_column),
+    throw InputError("missing-column",
+                     fmt::format("`{}` has no time column `{}`", file.string(), layout.time_column),
                      data::suggest(layout.time_column, names));
   }
   format.time_to_s = data::convert(1.0, header.time_unit, "s");

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 #include "data/model/error.hpp"
@@ -19,26 +20,31 @@ std::mutex& library_mutex() {
   return mutex;
 }
 
-// HDF5 hands the system's error on only as part of a description: "..., errno = 28, error message = '...', ...".
+// HDF5 hands the system's error on only as part of a description: "..., errno = 28, error message = '...',
+// ...".
 herr_t find_errno(unsigned, const H5E_error2_t* error, void* found) {
   if (!error->desc) return 0;
   if (const char* at = std::strstr(error->desc, "errno = ")) *static_cast<int*>(found) = std::atoi(at + 8);
   return 0;
 }
 
-// HDF5 clears its error stack at the next call, and handles close on the way out: the system's error is noted at once.
+// HDF5 clears its error stack at the next call, and handles close on the way out: the system's error is noted
+// at once.
 int last_system_error = 0;  // guarded by library_mutex()
 herr_t note_error(hid_t stack, void*) {
   H5Ewalk2(stack, H5E_WALK_UPWARD, find_errno, &last_system_error);
   return 0;
 }
 
-Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose}; }
+Handle scalar_space() {
+  return {H5Screate(H5S_SCALAR), H5Sclose};
+}
 
 bool write_scalar(hid_t object, const std::string& name, hid_t type, const void* value) {
   const Handle space = scalar_space();
   if (H5Aexists(object, name.c_str()) > 0) H5Adelete(object, name.c_str());
-  const Handle attribute(H5Acreate2(object, name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
   return attribute && H5Awrite(attribute.get(), type, value) >= 0;
 }
 
@@ -83,8 +89,8 @@ std::optional<std::vector<std::string>> read_any_text(hid_t type, hid_t space, R
 }  // namespace
 
 Lock::Lock() : lock_(library_mutex()) {
-  // HDF5 1.10 crashes in its own exit handler after a file could not be written to a full disk. We close all that we
-  // open, so that handler has nothing to do.
+  // HDF5 1.10 crashes in its own exit handler after a file could not be written to a full disk. We close all
+  // that we open, so that handler has nothing to do.
   static const bool once = [] { return H5dont_atexit() >= 0; }();
   static_cast<void>(once);
   last_system_error = 0;
@@ -92,7 +98,9 @@ Lock::Lock() : lock_(library_mutex()) {
   H5Eset_auto2(H5E_DEFAULT, note_error, nullptr);
 }
 
-Lock::~Lock() { H5Eset_auto2(H5E_DEFAULT, printer_, printer_data_); }
+Lock::~Lock() {
+  H5Eset_auto2(H5E_DEFAULT, printer_, printer_data_);
+}
 
 void fail_write(hid_t file, const std::filesystem::path& path, const std::string& what) {
   const int error = last_system_error;
@@ -136,7 +144,9 @@ bool write_attribute(hid_t object, const std::string& name, long long value) {
   return write_scalar(object, name, H5T_NATIVE_LLONG, &value);
 }
 
-bool has_attribute(hid_t object, const std::string& name) { return H5Aexists(object, name.c_str()) > 0; }
+bool has_attribute(hid_t object, const std::string& name) {
+  return H5Aexists(object, name.c_str()) > 0;
+}
 
 std::optional<std::string> text_attribute(hid_t object, const std::string& name) {
   if (!has_attribute(object, name)) return std::nullopt;
@@ -145,8 +155,9 @@ std::optional<std::string> text_attribute(hid_t object, const std::string& name)
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);
   if (!type || !space) return std::nullopt;
-  auto texts = read_any_text(type.get(), space.get(),
-                             [&](hid_t memory, void* buffer) { return H5Aread(attribute.get(), memory, buffer); });
+  auto texts = read_any_text(type.get(), space.get(), [&](hid_t memory, void* buffer) {
+    return H5Aread(attribute.get(), memory, buffer);
+  });
   if (!texts || texts->size() != 1) return std::nullopt;
   return std::move(texts->front());
 }
@@ -158,7 +169,8 @@ std::optional<double> number_attribute(hid_t object, const std::string& name) {
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);
   const H5T_class_t kind = H5Tget_class(type.get());
-  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || H5Sget_simple_extent_npoints(space.get()) != 1) return std::nullopt;
+  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || H5Sget_simple_extent_npoints(space.get()) != 1)
+    return std::nullopt;
   double value = 0.0;
   if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0) return std::nullopt;
   return value;
@@ -184,7 +196,8 @@ std::vector<std::string> children(hid_t group, H5O_type_t type) {
   H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &all);
   for (std::string& name : all) {
     H5O_info_t info;
-    if (H5Oget_info_by_name2(group, name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 && info.type == type) {
+    if (H5Oget_info_by_name2(group, name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
+        info.type == type) {
       wanted.push_back(std::move(name));
     }
   }
@@ -203,9 +216,12 @@ std::optional<std::vector<std::string>> read_texts(hid_t dataset) {
 bool write_text(hid_t parent, const std::string& name, const std::string& value) {
   const Handle space = scalar_space();
   const Handle type = text_type();
-  const Handle dataset(H5Dcreate2(parent, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle dataset(
+      H5Dcreate2(parent, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose);
   const char* text = value.c_str();
-  return dataset && H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, static_cast<const void*>(&text)) >= 0;
+  return dataset && H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                             static_cast<const void*>(&text)) >= 0;
 }
 
 Handle open_for_reading(const std::filesystem::path& file) {
@@ -222,14 +238,16 @@ Handle open_for_reading(const std::filesystem::path& file) {
   }
   Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle) {
-    throw InputError("damaged-file", fmt::format("`{}` is cut off or damaged: HDF5 cannot open it", file.string()),
+    throw InputError("damaged-file",
+                     fmt::format("`{}` is cut off or damaged: HDF5 cannot open it", file.string()),
                      "make it again, or fetch a complete copy");
   }
   return handle;
 }
 
 void check_name(const std::string& name, const std::string& what) {
-  const bool control = std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+  const bool control =
+      std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
   if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos || control) {
     throw InputError("bad-name", fmt::format("`{}` cannot be the name of a {}", name, what),
                      "a name must not be empty and must not hold `/` or control characters");

@@ -1,6 +1,6 @@
 #pragma once
-/// What the HDF5 files of this folder share: one lock, handles that close themselves, attributes, error texts.
-/// For the .cpp files of data/io only.
+/// What the HDF5 files of this folder share: one lock, handles that close themselves, attributes, error
+/// texts. For the .cpp files of data/io only.
 
 #include <hdf5.h>
 
@@ -14,8 +14,8 @@
 
 namespace brachium::io::hdf5 {
 
-/// Held around every HDF5 call of the program (Debian's library is built without its own lock). While it is held,
-/// the library's own printing of errors is off.
+/// Held around every HDF5 call of the program (Debian's library is built without its own lock). While it is
+/// held, the library's own printing of errors is off.
 class Lock {
  public:
   Lock();
@@ -63,11 +63,11 @@ class Handle {
 /// Throws InputError("write-failed") with the system's reason out of HDF5's error stack, after divert(file).
 [[noreturn]] void fail_write(hid_t file, const std::filesystem::path& path, const std::string& what);
 
-/// Sends all further writes of an open file to memory, so that HDF5 can close a file that will be thrown away even
-/// when the disk is full (closing fails otherwise, and HDF5 1.10 does not survive that).
+/// Sends all further writes of an open file to memory, so that HDF5 can close a file that will be thrown away
+/// even when the disk is full (closing fails otherwise, and HDF5 1.10 does not survive that).
 void divert(hid_t file);
 
-Handle text_type();                                 ///< variable-length UTF-8
+Handle text_type();                                   ///< variable-length UTF-8
 Handle create_group(hid_t parent, const char* name);  ///< id < 0 on failure
 bool write_attribute(hid_t object, const std::string& name, const std::string& value);
 bool write_attribute(hid_t object, const std::string& name, double value);
@@ -88,8 +88,8 @@ bool write_text(hid_t parent, const std::string& name, const std::string& value)
 /// Opens for reading; throws InputError "missing-file", "empty-file", "not-hdf5", "damaged-file".
 Handle open_for_reading(const std::filesystem::path& file);
 
-/// Throws InputError("bad-name") unless `name` can name an HDF5 object: not empty, ".", "..", no "/", no control
-/// characters.
+/// Throws InputError("bad-name") unless `name` can name an HDF5 object: not empty, ".", "..", no "/", no
+/// control characters.
 void check_name(const std::string& name, const std::string& what);
 
 }  // namespace brachium::io::hdf5

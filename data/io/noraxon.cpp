@@ -20,12 +20,15 @@ using data::InputError;
 using data::Severity;
 using data::SourceSpan;
 
-const std::vector<std::string> metadata_keys{"type", "name", "time_units", "begin_time", "frequency", "count", "units"};
+const std::vector<std::string> metadata_keys{"type",      "name",  "time_units", "begin_time",
+                                             "frequency", "count", "units"};
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::size_t line, const std::string& message) {
-  throw InputError(Diagnostic{Severity::error, "not-noraxon", fmt::format("`{}` is not a Noraxon signal export: {}", file.filename().string(), message),
-                              SourceSpan{file.string(), static_cast<int>(line), 0, 1, {}},
-                              "export single signals as CSV, or describe the file with `format = \"csv\"`"});
+  throw InputError(
+      Diagnostic{Severity::error, "not-noraxon",
+                 fmt::format("`{}` is not a Noraxon signal export: {}", file.filename().string(), message),
+                 SourceSpan{file.string(), static_cast<int>(line), 0, 1, {}},
+                 "export single signals as CSV, or describe the file with `format = \"csv\"`"});
 }
 
 double number(const std::filesystem::path& file, const std::string& key, const std::string& text) {
@@ -48,9 +51,11 @@ Recording open_noraxon(const std::filesystem::path& file) {
     if (lines.next(line)) text = line;
     first_byte = lines.next_byte();
   }
-  if (split_fields(head[0], ",") != metadata_keys) fail(file, 1, "the first row must be `type,name,time_units,begin_time,frequency,count,units`");
+  if (split_fields(head[0], ",") != metadata_keys)
+    fail(file, 1, "the first row must be `type,name,time_units,begin_time,frequency,count,units`");
   const std::vector<std::string> values = split_fields(head[1], ",");
-  if (values.size() != metadata_keys.size()) fail(file, 2, fmt::format("the second row has {} fields, not 7", values.size()));
+  if (values.size() != metadata_keys.size())
+    fail(file, 2, fmt::format("the second row has {} fields, not 7", values.size()));
   if (!head[2].empty()) fail(file, 3, "the third row must be blank");
   const std::vector<std::string> columns = split_fields(head[3], ",");
   const std::string& type = values[0];
@@ -62,11 +67,14 @@ Recording open_noraxon(const std::filesystem::path& file) {
   } else if (type == "signal_4d") {
     wanted = {"time", "x", "y", "z", "w"};
   } else {
-    throw InputError(Diagnostic{Severity::error, "unknown-type", fmt::format("`{}` is not a type of Noraxon signal that can be read", type),
-                                SourceSpan{file.string(), 2, 1, static_cast<int>(std::max<std::size_t>(1, type.size())), head[1]},
-                                "known: signal, signal_3d, signal_4d"});
+    throw InputError(Diagnostic{
+        Severity::error, "unknown-type",
+        fmt::format("`{}` is not a type of Noraxon signal that can be read", type),
+        SourceSpan{file.string(), 2, 1, static_cast<int>(std::max<std::size_t>(1, type.size())), head[1]},
+        "known: signal, signal_3d, signal_4d"});
   }
-  if (columns != wanted) fail(file, 4, fmt::format("the columns of a `{}` must be `{}`", type, fmt::join(wanted, ",")));
+  if (columns != wanted)
+    fail(file, 4, fmt::format("the columns of a `{}` must be `{}`", type, fmt::join(wanted, ",")));
 
   RecordingHeader header;
   header.name = values[1];
@@ -76,7 +84,8 @@ Recording open_noraxon(const std::filesystem::path& file) {
   header.rate_hz = number(file, "frequency", values[4]);
   const double count = number(file, "count", values[5]);
   if (!(*header.rate_hz > 0.0)) fail(file, 2, fmt::format("`frequency` is {}", values[4]));
-  if (!(count >= 0.0 && count <= 1e12 && count == std::floor(count))) fail(file, 2, fmt::format("`count` is {}", values[5]));
+  if (!(count >= 0.0 && count <= 1e12 && count == std::floor(count)))
+    fail(file, 2, fmt::format("`count` is {}", values[5]));
   header.rows = static_cast<std::size_t>(count);
   header.has_time = true;
   RowFormat format;

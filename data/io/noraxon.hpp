@@ -8,8 +8,8 @@
 
 namespace brachium::io {
 
-/// Opens an export. Throws InputError: "missing-file", "empty-file", "not-noraxon" (what is missing), "unknown-type".
-/// The stated count and frequency are checked against the rows by check_timing.
+/// Opens an export. Throws InputError: "missing-file", "empty-file", "not-noraxon" (what is missing),
+/// "unknown-type". The stated count and frequency are checked against the rows by check_timing.
 Recording open_noraxon(const std::filesystem::path& file);
 
 }  // namespace brachium::io

@@ -30,13 +30,15 @@ void at_key(TomlTable& table, const std::string& key, Action action) {
   }
 }
 
-std::string filled(TomlTable& table, const std::string& key, const std::string& text, const Variables& variables) {
+std::string filled(TomlTable& table, const std::string& key, const std::string& text,
+                   const Variables& variables) {
   std::vector<std::string> unknown;
   std::string out = fill(text, variables, unknown);
   std::vector<std::string> known;
   for (const auto& [name, value] : variables) known.push_back(name);
   for (const std::string& name : unknown) {
-    table.error("unknown-variable", fmt::format("`{{{}}}` is not a variable of this trial", name), key, data::suggest(name, known));
+    table.error("unknown-variable", fmt::format("`{{{}}}` is not a variable of this trial", name), key,
+                data::suggest(name, known));
   }
   return out;
 }
@@ -44,10 +46,14 @@ std::string filled(TomlTable& table, const std::string& key, const std::string& 
 /// A value as it was written, for use as a variable.
 std::optional<std::string> text_of(const TomlNode& node) {
   switch (node.kind) {
-    case TomlNode::Kind::text: return node.text;
-    case TomlNode::Kind::integer: return std::to_string(node.integer);
-    case TomlNode::Kind::number: return fmt::format("{}", node.number);
-    default: return std::nullopt;
+    case TomlNode::Kind::text:
+      return node.text;
+    case TomlNode::Kind::integer:
+      return std::to_string(node.integer);
+    case TomlNode::Kind::number:
+      return fmt::format("{}", node.number);
+    default:
+      return std::nullopt;
   }
 }
 
@@ -85,8 +91,10 @@ void apply_overrides(TomlNode& root, const Variables& overrides, std::vector<Dia
       rest.erase(0, dot + 1);
     }
     if (!node) {
-      diagnostics.push_back({data::Severity::error, "unknown-key", fmt::format("`{}` cannot be set: the description has no such table", key),
-                             data::SourceSpan{override_origin, 0, 0, 1, {}}, "keys of [session], or a dotted path of tables"});
+      diagnostics.push_back({data::Severity::error, "unknown-key",
+                             fmt::format("`{}` cannot be set: the description has no such table", key),
+                             data::SourceSpan{override_origin, 0, 0, 1, {}},
+                             "keys of [session], or a dotted path of tables"});
       continue;
     }
     node->member(rest) = parse_toml_value(text, override_origin);
@@ -96,7 +104,9 @@ void apply_overrides(TomlNode& root, const Variables& overrides, std::vector<Dia
 void read_session(TomlTable& root, SessionDescription& out) {
   auto session = root.table("session");
   if (!session) {
-    if (!root.has("session")) root.error("missing-key", "there is no [session]", {}, "it names the subject and the folder of the recordings");
+    if (!root.has("session"))
+      root.error("missing-key", "there is no [session]", {},
+                 "it names the subject and the folder of the recordings");
     return;
   }
   out.session.subject = session->require_text("subject");
@@ -125,8 +135,10 @@ void read_session(TomlTable& root, SessionDescription& out) {
 
 // ---------------------------------------------------------------- [[trial]]
 
-/// 2.5, "{load}", or { value = "{load}", unit = "lb" }, which is brought to SI and gets the SI unit in its name.
-void read_condition(TomlTable& conditions, const std::string& key, const TomlNode& node, TrialDescription& trial) {
+/// 2.5, "{load}", or { value = "{load}", unit = "lb" }, which is brought to SI and gets the SI unit in its
+/// name.
+void read_condition(TomlTable& conditions, const std::string& key, const TomlNode& node,
+                    TrialDescription& trial) {
   if (node.kind != TomlNode::Kind::table) {
     const auto text = text_of(node);
     const auto value = text ? parse_number(filled(conditions, key, *text, trial.variables)) : std::nullopt;
@@ -169,14 +181,18 @@ void read_one_trial(TomlTable& table, const Variables& variables, SessionDescrip
   }
   if (auto attributes = table.table("attributes")) {
     for (const auto& [key, node] : attributes->node().members) {
-      if (const auto text = attributes->text(key)) trial.info.attributes[key] = filled(*attributes, key, *text, trial.variables);
+      if (const auto text = attributes->text(key))
+        trial.info.attributes[key] = filled(*attributes, key, *text, trial.variables);
     }
   }
   if (trial.info.name.find('/') != std::string::npos) {
-    table.error("bad-name", fmt::format("`{}` cannot be the name of a trial", trial.info.name), "name", "a name must not hold `/`");
+    table.error("bad-name", fmt::format("`{}` cannot be the name of a trial", trial.info.name), "name",
+                "a name must not hold `/`");
   }
-  if (std::any_of(out.trials.begin(), out.trials.end(), [&](const auto& t) { return t.info.name == trial.info.name; })) {
-    table.error("duplicate-trial", fmt::format("there are two trials `{}`", trial.info.name), "name", "give each trial a name of its own");
+  if (std::any_of(out.trials.begin(), out.trials.end(),
+                  [&](const auto& t) { return t.info.name == trial.info.name; })) {
+    table.error("duplicate-trial", fmt::format("there are two trials `{}`", trial.info.name), "name",
+                "give each trial a name of its own");
   }
   out.trials.push_back(std::move(trial));
 }
@@ -220,7 +236,8 @@ SignalMapping read_mapping(TomlTable& table, const SignalMapping& base, bool& ha
     at_key(table, "unit", [&] { data::parse_unit(*v); });
   }
   if (const auto v = table.number("sign")) {
-    if (*v != 1.0 && *v != -1.0) table.error("out-of-range", fmt::format("`sign` must be 1 or -1, not {}", *v), "sign");
+    if (*v != 1.0 && *v != -1.0)
+      table.error("out-of-range", fmt::format("`sign` must be 1 or -1, not {}", *v), "sign");
     m.scale *= *v;
   }
   if (const auto v = table.number("scale")) {
@@ -266,7 +283,8 @@ FileFormat read_format(TomlTable& table, const std::string& path) {
   const std::string format = table.text("format").value_or(storage ? "opensim" : "csv");
   const auto at = std::find(known.begin(), known.end(), format);
   if (at != known.end()) return static_cast<FileFormat>(at - known.begin());
-  table.error("unknown-format", fmt::format("`{}` is not a format that can be read", format), "format", data::suggest(format, known));
+  table.error("unknown-format", fmt::format("`{}` is not a format that can be read", format), "format",
+              data::suggest(format, known));
   return FileFormat::csv;
 }
 
@@ -276,7 +294,9 @@ void read_signals(TomlTable& table, FileMapping& file) {
   const auto columns = table.texts("columns");
   const auto add = [&](TomlTable& at, SignalMapping m, bool has_quantity) {
     if (m.name.empty()) at.error("missing-key", "`name` of the signal is missing");
-    if (!has_quantity) at.error("missing-key", "`quantity` of the signal is missing", {}, "for example \"emg\" or \"joint_angle\"");
+    if (!has_quantity)
+      at.error("missing-key", "`quantity` of the signal is missing", {},
+               "for example \"emg\" or \"joint_angle\"");
     file.signals.push_back(std::move(m));
   };
   if (!table.has("signal")) {
@@ -287,7 +307,8 @@ void read_signals(TomlTable& table, FileMapping& file) {
     }
     return;
   }
-  if (columns) table.error("conflicting-keys", "`columns` and [[file.signal]] cannot stand together", "columns");
+  if (columns)
+    table.error("conflicting-keys", "`columns` and [[file.signal]] cannot stand together", "columns");
   for (TomlTable& entry : table.tables("signal")) {
     bool has_quantity = base_quantity;
     SignalMapping m = read_mapping(entry, base, has_quantity);
@@ -306,7 +327,8 @@ void read_file(TomlTable& table, SessionDescription& out) {
   file.timing.ignore_stated_rows = table.boolean("ignore_stated_rows").value_or(false);
   if (const auto v = table.text("timing")) {
     if (*v != "strict" && *v != "interpolate") {
-      table.error("unknown-timing", fmt::format("`timing` must be \"strict\" or \"interpolate\", not `{}`", *v), "timing");
+      table.error("unknown-timing",
+                  fmt::format("`timing` must be \"strict\" or \"interpolate\", not `{}`", *v), "timing");
     }
     file.timing.rule = *v == "interpolate" ? TimingRule::interpolate : TimingRule::strict;
   }
@@ -315,10 +337,12 @@ void read_file(TomlTable& table, SessionDescription& out) {
   read_signals(table, file);
   table.finish();
   for (const std::string& pattern : file.trials) {
-    if (std::none_of(out.trials.begin(), out.trials.end(), [&](const auto& t) { return data::matches(pattern, t.info.name); })) {
+    if (std::none_of(out.trials.begin(), out.trials.end(),
+                     [&](const auto& t) { return data::matches(pattern, t.info.name); })) {
       std::vector<std::string> names;
       for (const TrialDescription& t : out.trials) names.push_back(t.info.name);
-      table.error("no-match", fmt::format("no trial matches `{}`", pattern), "trials", data::suggest(pattern, names));
+      table.error("no-match", fmt::format("no trial matches `{}`", pattern), "trials",
+                  data::suggest(pattern, names));
     }
   }
   out.files.push_back(std::move(file));

@@ -36,20 +36,23 @@ struct InfoReader {
 
   double number(hid_t object, const std::string& name, const std::string& of) const {
     if (auto value = hdf5::number_attribute(object, name)) {
-      if (!std::isfinite(*value)) fail("wrong-type", fmt::format("attribute `{}` of {} is not finite", name, of), layout::help);
+      if (!std::isfinite(*value))
+        fail("wrong-type", fmt::format("attribute `{}` of {} is not finite", name, of), layout::help);
       return *value;
     }
     missing(object, name, of, "a number");
   }
 
-  [[noreturn]] void missing(hid_t object, const std::string& name, const std::string& of, const std::string& kind) const {
+  [[noreturn]] void missing(hid_t object, const std::string& name, const std::string& of,
+                            const std::string& kind) const {
     if (hdf5::has_attribute(object, name)) {
       fail("wrong-type", fmt::format("attribute `{}` of {} is not {}", name, of, kind), layout::help);
     }
     fail("missing-attribute", fmt::format("{} has no attribute `{}`", of, name), layout::help);
   }
 
-  std::map<std::string, double> numbers(hid_t object, const std::string& prefix, const std::string& of) const {
+  std::map<std::string, double> numbers(hid_t object, const std::string& prefix,
+                                        const std::string& of) const {
     std::map<std::string, double> values;
     for (const std::string& name : hdf5::attribute_names(object)) {
       if (name.starts_with(prefix)) values[name.substr(prefix.size())] = number(object, name, of);
@@ -60,7 +63,8 @@ struct InfoReader {
   std::map<std::string, std::string> texts(hid_t object, const std::string& of) const {
     std::map<std::string, std::string> values;
     for (const std::string& name : hdf5::attribute_names(object)) {
-      if (name.starts_with(layout::attribute)) values[name.substr(layout::attribute.size())] = text(object, name, of);
+      if (name.starts_with(layout::attribute))
+        values[name.substr(layout::attribute.size())] = text(object, name, of);
     }
     return values;
   }
@@ -78,9 +82,11 @@ struct InfoReader {
     SignalInfo info;
     info.name = name;
     info.count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get()));
-    info.unit = hdf5::has_attribute(dataset.get(), "unit") ? text(dataset.get(), "unit", of) : text(dataset.get(), "units", of);
+    info.unit = hdf5::has_attribute(dataset.get(), "unit") ? text(dataset.get(), "unit", of)
+                                                           : text(dataset.get(), "units", of);
     info.rate_hz = number(dataset.get(), "rate_hz", of);
-    if (!(info.rate_hz > 0.0)) fail("wrong-type", fmt::format("`rate_hz` of {} must be greater than 0", of), layout::help);
+    if (!(info.rate_hz > 0.0))
+      fail("wrong-type", fmt::format("`rate_hz` of {} must be greater than 0", of), layout::help);
     info.start_time_s = number(dataset.get(), "start_time_s", of);
     try {
       info.quantity = data::parse_quantity(text(dataset.get(), "quantity", of));
@@ -112,7 +118,8 @@ struct InfoReader {
       SignalInfo one = signal(group.get(), name, child, at);
       signals.emplace_back(at, std::move(one));
     }
-    std::stable_sort(signals.begin(), signals.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(signals.begin(), signals.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [at, one] : signals) info.signals.push_back(std::move(one));
     return info;
   }
@@ -121,12 +128,14 @@ struct InfoReader {
     const std::string of = "the file";
     const std::string format = hdf5::text_attribute(root, "format").value_or("");
     if (format != layout::format) {
-      fail("wrong-format", "this HDF5 file is not a Brachium session (no attribute `format` = `brachium-session`)",
+      fail("wrong-format",
+           "this HDF5 file is not a Brachium session (no attribute `format` = `brachium-session`)",
            "import the recordings with a session description (.toml) first");
     }
     const double version = number(root, "format_version", of);
     if (version != layout::version) {
-      fail("wrong-version", fmt::format("format version {} cannot be read, only version {}", version, layout::version),
+      fail("wrong-version",
+           fmt::format("format version {} cannot be read, only version {}", version, layout::version),
            "import the recordings again with this version of the program");
     }
     data::SessionInfo info;
@@ -141,7 +150,8 @@ struct InfoReader {
       TrialInfo one = trial(trials.get(), name, at);
       found.emplace_back(at, std::move(one));
     }
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [at, one] : found) info.trials.push_back(std::move(one));
     return info;
   }
@@ -159,7 +169,8 @@ struct SessionFile::Impl {
     const auto key = std::pair(trial, signal);
     if (const auto at = open.find(key); at != open.end()) return at->second.get();
     if (open.size() >= most_open_datasets) open.clear();
-    const std::string name = fmt::format("/trials/{}/{}", info.trials[trial].name, info.trials[trial].signals[signal].name);
+    const std::string name =
+        fmt::format("/trials/{}/{}", info.trials[trial].name, info.trials[trial].signals[signal].name);
     Handle handle(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
     const hid_t id = handle.get();
     if (handle) open.emplace(key, std::move(handle));
@@ -180,9 +191,12 @@ SessionFile::~SessionFile() {
   impl_.reset();
 }
 
-const data::SessionInfo& SessionFile::info() const { return impl_->info; }
+const data::SessionInfo& SessionFile::info() const {
+  return impl_->info;
+}
 
-void SessionFile::read(std::size_t trial, std::size_t signal, std::size_t first, std::span<double> out) const {
+void SessionFile::read(std::size_t trial, std::size_t signal, std::size_t first,
+                       std::span<double> out) const {
   const SignalInfo& info = impl_->info.trials.at(trial).signals.at(signal);
   if (first > info.count || out.size() > info.count - first) {
     throw std::out_of_range("SessionFile::read past the end of a signal");
@@ -196,17 +210,19 @@ void SessionFile::read(std::size_t trial, std::size_t signal, std::size_t first,
     const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
     if (!stored || H5Sselect_hyperslab(stored.get(), H5S_SELECT_SET, &start, nullptr, &count, nullptr) < 0 ||
         H5Dread(dataset, H5T_NATIVE_DOUBLE, memory.get(), stored.get(), H5P_DEFAULT, out.data()) < 0) {
-      throw InputError("damaged-data",
-                       fmt::format("`{}`: samples of signal `{}` of trial `{}` cannot be read; the file is cut off or damaged",
-                                   impl_->path.string(), info.name, impl_->info.trials[trial].name),
-                       "make the file again, or fetch a complete copy");
+      throw InputError(
+          "damaged-data",
+          fmt::format(
+              "`{}`: samples of signal `{}` of trial `{}` cannot be read; the file is cut off or damaged",
+              impl_->path.string(), info.name, impl_->info.trials[trial].name),
+          "make the file again, or fetch a complete copy");
     }
   }
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (std::isfinite(out[i])) continue;
     throw InputError("non-finite-sample",
-                     fmt::format("`{}`: signal `{}` of trial `{}` has {} at {:.6g} s", impl_->path.string(), info.name,
-                                 impl_->info.trials[trial].name, out[i], info.time_s(first + i)),
+                     fmt::format("`{}`: signal `{}` of trial `{}` has {} at {:.6g} s", impl_->path.string(),
+                                 info.name, impl_->info.trials[trial].name, out[i], info.time_s(first + i)),
                      "mend or cut the recording; Brachium does not replace samples");
   }
 }
@@ -217,6 +233,8 @@ void write_session(const data::Session& session, const std::filesystem::path& fi
   writer.commit();
 }
 
-data::Session read_session(const std::filesystem::path& file) { return data::load(SessionFile(file)); }
+data::Session read_session(const std::filesystem::path& file) {
+  return data::load(SessionFile(file));
+}
 
 }  // namespace brachium::io

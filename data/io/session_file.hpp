@@ -1,14 +1,14 @@
 #pragma once
 /// A session as an HDF5 file that h5py and xarray open as it is.
 ///
-///   /                        attributes: format "brachium-session", format_version 1, subject, anthropometry
-///   |                        (anthropometry.<name>), attribute.<name> for each free text
-///   /trials/<trial>          attributes: name, index (order), kind, condition.<name> (numbers), attribute.<name>
-///   /trials/<trial>/<signal> float64, chunked, shuffled, deflated; attributes: units and unit (the same text; `units`
-///                            is what xarray and the CF conventions read), quantity, rate_hz, start_time_s, muscle,
-///                            coordinate, index (order), attribute.<name>
-///   /trials/<trial>/time_<n> time stamps [s], one dimension scale per distinct (rate, start, count) of the trial,
-///                            attached to its signals
+///   /                          format "brachium-session", format_version 1, subject, anthropometry.<name>,
+///                              attribute.<name> for each free text
+///   /trials/<trial>            name, index (order), kind, condition.<name> (numbers), attribute.<name>
+///   /trials/<trial>/<signal>   float64, chunked, shuffled, deflated; units and unit (the same text; `units` is
+///                              what xarray and the CF conventions read), quantity, rate_hz, start_time_s,
+///                              muscle, coordinate, index (order), attribute.<name>
+///   /trials/<trial>/time_<n>   time stamps [s], one dimension scale per distinct (rate, start, count) of the
+///                              trial, attached to its signals
 ///
 /// The samples carry checksums (Fletcher-32), so that damaged bytes are found when they are read.
 /// Names with a `/`, empty names, "." and "..", and signal names of the form time_<n> are refused.
@@ -28,8 +28,8 @@ namespace brachium::io {
 /// A session file opened for reading: names, units and rates at once, samples when asked for.
 class SessionFile final : public data::SessionSource {
  public:
-  /// Throws InputError naming the file: "missing-file", "empty-file", "not-hdf5", "damaged-file" (also cut-off files),
-  /// "wrong-format", "wrong-version", "missing-attribute", "missing-group", "wrong-type".
+  /// Throws InputError naming the file: "missing-file", "empty-file", "not-hdf5", "damaged-file" (also
+  /// cut-off files), "wrong-format", "wrong-version", "missing-attribute", "missing-group", "wrong-type".
   explicit SessionFile(const std::filesystem::path& file);
   ~SessionFile() override;
   SessionFile(const SessionFile&) = delete;
@@ -37,8 +37,8 @@ class SessionFile final : public data::SessionSource {
 
   const data::SessionInfo& info() const override;
   using SessionSource::read;
-  /// Throws std::out_of_range past the end, InputError("damaged-data") where the stored bytes fail their checksum,
-  /// InputError("non-finite-sample") where a file of another program holds NaN or Inf.
+  /// Throws std::out_of_range past the end, InputError("damaged-data") where the stored bytes fail their
+  /// checksum, InputError("non-finite-sample") where a file of another program holds NaN or Inf.
   void read(std::size_t trial, std::size_t signal, std::size_t first, std::span<double> out) const override;
 
  private:
@@ -46,12 +46,14 @@ class SessionFile final : public data::SessionSource {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Writes a session file. Nothing stands under the file's name before commit(); without commit() nothing is left.
+/// Writes a session file. Nothing stands under the file's name before commit(); without commit() nothing is
+/// left.
 class SessionFileWriter : public data::SessionSink {
  public:
   struct Options {
-    int deflate_level = 1;                      ///< 0 (none) to 9
-    std::size_t chunk_samples = std::size_t{1} << 16;  ///< samples per chunk; a chunk is what one reads at least
+    int deflate_level = 1;  ///< 0 (none) to 9
+    std::size_t chunk_samples = std::size_t{1}
+                                << 16;  ///< samples per chunk; a chunk is what one reads at least
   };
 
   /// Throws InputError("missing-folder" | "read-only-folder").
@@ -64,10 +66,12 @@ class SessionFileWriter : public data::SessionSink {
   void begin(const data::SessionInfo& session) override;
   /// Throws InputError("bad-name" | "duplicate-trial").
   void begin_trial(const data::TrialInfo& trial) override;
-  /// Throws InputError("bad-name" | "duplicate-signal" | "bad-signal" (rate not positive, no samples, no unit)).
+  /// Throws InputError("bad-name" | "duplicate-signal" | "bad-signal" (rate not positive, no samples, no
+  /// unit)).
   void begin_signal(const std::string& trial, const data::SignalInfo& info) override;
-  /// Every sample once, in any order of chunks (in their order is fastest). Throws InputError("non-finite-sample")
-  /// naming signal and time, InputError("write-failed"), std::out_of_range past the end.
+  /// Every sample once, in any order of chunks (in their order is fastest). Throws
+  /// InputError("non-finite-sample") naming signal and time, InputError("write-failed"), std::out_of_range
+  /// past the end.
   void write_samples(const std::string& trial, const std::string& signal, std::size_t first,
                      std::span<const double> samples) override;
 

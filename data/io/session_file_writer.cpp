@@ -23,7 +23,7 @@ using hdf5::Handle;
 
 struct OpenSignal {
   SignalInfo info;
-  Handle dataset;            // closed once all samples are there
+  Handle dataset;  // closed once all samples are there
   std::size_t written = 0;
 };
 
@@ -53,7 +53,8 @@ struct SessionFileWriter::Impl {
     if (!done) hdf5::fail_write(file.get(), target.target(), what);
   }
 
-  // Flushing first: a close that fails would free the dataset and leave the file in a state HDF5 cannot close.
+  // Flushing first: a close that fails would free the dataset and leave the file in a state HDF5 cannot
+  // close.
   void close(Handle& dataset, const std::string& what) const {
     need(H5Dflush(dataset.get()) >= 0 && dataset.close(), what);
   }
@@ -65,11 +66,14 @@ struct SessionFileWriter::Impl {
   }
 
   void write_texts(hid_t object, const std::map<std::string, std::string>& texts) const {
-    for (const auto& [name, value] : texts) need(hdf5::write_attribute(object, layout::attribute + name, value), "an attribute");
+    for (const auto& [name, value] : texts)
+      need(hdf5::write_attribute(object, layout::attribute + name, value), "an attribute");
   }
 
-  void write_numbers(hid_t object, const std::string& prefix, const std::map<std::string, double>& numbers) const {
-    for (const auto& [name, value] : numbers) need(hdf5::write_attribute(object, prefix + name, value), "an attribute");
+  void write_numbers(hid_t object, const std::string& prefix,
+                     const std::map<std::string, double>& numbers) const {
+    for (const auto& [name, value] : numbers)
+      need(hdf5::write_attribute(object, prefix + name, value), "an attribute");
   }
 
   Handle create_dataset(hid_t group, const std::string& name, std::size_t count) const {
@@ -84,7 +88,9 @@ struct SessionFileWriter::Impl {
     H5Pset_fletcher32(plan.get());
     // Every sample is written by us: no fill values first.
     H5Pset_fill_time(plan.get(), H5D_FILL_TIME_NEVER);
-    return {H5Dcreate2(group, name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, plan.get(), H5P_DEFAULT), H5Dclose};
+    return {
+        H5Dcreate2(group, name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, plan.get(), H5P_DEFAULT),
+        H5Dclose};
   }
 
   bool write_slab(hid_t dataset, std::size_t first, std::span<const double> samples) const {
@@ -109,7 +115,8 @@ struct SessionFileWriter::Impl {
       need(write_slab(scale.get(), first, std::span(times).first(n)), "time stamps");
     }
     need(hdf5::write_attribute(scale.get(), "units", std::string("s")) &&
-             hdf5::write_attribute(scale.get(), "unit", std::string("s")) && H5DSset_scale(scale.get(), name.c_str()) >= 0,
+             hdf5::write_attribute(scale.get(), "unit", std::string("s")) &&
+             H5DSset_scale(scale.get(), name.c_str()) >= 0,
          "time stamps");
     close(scale, "time stamps");
     trial.scales.emplace(key, name);
@@ -117,17 +124,20 @@ struct SessionFileWriter::Impl {
   }
 };
 
-SessionFileWriter::SessionFileWriter(const std::filesystem::path& file) : SessionFileWriter(file, Options{}) {}
+SessionFileWriter::SessionFileWriter(const std::filesystem::path& file)
+    : SessionFileWriter(file, Options{}) {}
 
 SessionFileWriter::SessionFileWriter(const std::filesystem::path& file, const Options& options) {
   if (options.deflate_level < 0 || options.deflate_level > 9 || options.chunk_samples == 0) {
-    throw std::logic_error("SessionFileWriter: deflate_level must lie in [0, 9], chunk_samples must be positive");
+    throw std::logic_error(
+        "SessionFileWriter: deflate_level must lie in [0, 9], chunk_samples must be positive");
   }
   const hdf5::Lock lock;
   auto impl = std::make_unique<Impl>(file, options);
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  impl->file = Handle(H5Fcreate(impl->target.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+  impl->file =
+      Handle(H5Fcreate(impl->target.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
   impl->need(static_cast<bool>(impl->file), "a new file");
   const hid_t root = impl->file.get();
   impl->trials_group = hdf5::create_group(root, "trials");
@@ -143,8 +153,12 @@ SessionFileWriter::~SessionFileWriter() {
   impl_.reset();
 }
 
-std::int64_t SessionFileWriter::hdf5_id() const { return impl_->file.get(); }
-const std::filesystem::path& SessionFileWriter::target() const { return impl_->target.target(); }
+std::int64_t SessionFileWriter::hdf5_id() const {
+  return impl_->file.get();
+}
+const std::filesystem::path& SessionFileWriter::target() const {
+  return impl_->target.target();
+}
 
 void SessionFileWriter::begin(const data::SessionInfo& session) {
   const hdf5::Lock lock;
@@ -158,7 +172,8 @@ void SessionFileWriter::begin_trial(const data::TrialInfo& trial) {
   hdf5::check_name(trial.name, "trial");
   const hdf5::Lock lock;
   if (impl_->trials.contains(trial.name)) {
-    throw InputError("duplicate-trial", fmt::format("there are two trials `{}`", trial.name), "give each trial a name of its own");
+    throw InputError("duplicate-trial", fmt::format("there are two trials `{}`", trial.name),
+                     "give each trial a name of its own");
   }
   Handle group = hdf5::create_group(impl_->trials_group.get(), trial.name.c_str());
   impl_->need(group && hdf5::write_attribute(group.get(), "name", trial.name) &&
@@ -173,13 +188,16 @@ void SessionFileWriter::begin_trial(const data::TrialInfo& trial) {
 void SessionFileWriter::begin_signal(const std::string& trial, const SignalInfo& info) {
   hdf5::check_name(info.name, "signal");
   if (layout::is_time_name(info.name)) {
-    throw InputError("bad-name", fmt::format("`{}` cannot be the name of a signal", info.name), "names time_<number> are kept for time stamps");
+    throw InputError("bad-name", fmt::format("`{}` cannot be the name of a signal", info.name),
+                     "names time_<number> are kept for time stamps");
   }
-  if (!(info.rate_hz > 0.0) || !std::isfinite(info.rate_hz) || !std::isfinite(info.start_time_s) || info.count == 0 ||
-      info.unit.empty()) {
-    throw InputError("bad-signal", fmt::format("signal `{}` of trial `{}` needs a rate above 0, a start time, a unit and samples "
-                                               "(rate {} Hz, start {} s, unit `{}`, {} samples)",
-                                               info.name, trial, info.rate_hz, info.start_time_s, info.unit, info.count));
+  if (!(info.rate_hz > 0.0) || !std::isfinite(info.rate_hz) || !std::isfinite(info.start_time_s) ||
+      info.count == 0 || info.unit.empty()) {
+    throw InputError(
+        "bad-signal",
+        fmt::format("signal `{}` of trial `{}` needs a rate above 0, a start time, a unit and samples "
+                    "(rate {} Hz, start {} s, unit `{}`, {} samples)",
+                    info.name, trial, info.rate_hz, info.start_time_s, info.unit, info.count));
   }
   const hdf5::Lock lock;
   OpenTrial& open = impl_->trial(trial);
@@ -211,20 +229,25 @@ void SessionFileWriter::write_samples(const std::string& trial, const std::strin
   const hdf5::Lock lock;
   OpenTrial& open = impl_->trial(trial);
   const auto at = open.signals.find(signal);
-  if (at == open.signals.end()) throw std::logic_error("SessionFileWriter: signal `" + signal + "` was not begun");
+  if (at == open.signals.end())
+    throw std::logic_error("SessionFileWriter: signal `" + signal + "` was not begun");
   OpenSignal& out = at->second;
   if (bad != samples.end()) {
-    throw InputError("non-finite-sample", fmt::format("signal `{}` of trial `{}` has {} at {:.6g} s", signal, trial, *bad,
-                                                      out.info.time_s(first + static_cast<std::size_t>(bad - samples.begin()))));
+    throw InputError("non-finite-sample",
+                     fmt::format("signal `{}` of trial `{}` has {} at {:.6g} s", signal, trial, *bad,
+                                 out.info.time_s(first + static_cast<std::size_t>(bad - samples.begin()))));
   }
   if (first > out.info.count || samples.size() > out.info.count - first) {
     throw std::out_of_range("SessionFileWriter::write_samples past the end of signal `" + signal + "`");
   }
   if (samples.empty()) return;
-  if (!out.dataset) throw std::logic_error("SessionFileWriter: samples of signal `" + signal + "` written twice");
-  impl_->need(impl_->write_slab(out.dataset.get(), first, samples), fmt::format("signal `{}` of trial `{}`", signal, trial));
+  if (!out.dataset)
+    throw std::logic_error("SessionFileWriter: samples of signal `" + signal + "` written twice");
+  impl_->need(impl_->write_slab(out.dataset.get(), first, samples),
+              fmt::format("signal `{}` of trial `{}`", signal, trial));
   out.written += samples.size();
-  if (out.written >= out.info.count) impl_->close(out.dataset, fmt::format("signal `{}` of trial `{}`", signal, trial));
+  if (out.written >= out.info.count)
+    impl_->close(out.dataset, fmt::format("signal `{}` of trial `{}`", signal, trial));
 }
 
 void SessionFileWriter::commit() {
@@ -233,8 +256,9 @@ void SessionFileWriter::commit() {
   for (const auto& [trial, open] : impl_->trials) {
     for (const auto& [name, signal] : open.signals) {
       if (signal.written != signal.info.count) {
-        throw std::logic_error(fmt::format("SessionFileWriter: {} of {} samples of signal `{}` of trial `{}` were written",
-                                           signal.written, signal.info.count, name, trial));
+        throw std::logic_error(
+            fmt::format("SessionFileWriter: {} of {} samples of signal `{}` of trial `{}` were written",
+                        signal.written, signal.info.count, name, trial));
       }
     }
   }

@@ -36,9 +36,12 @@ struct PlannedFile {
 
 Recording open(const FileMapping& mapping, const std::filesystem::path& file) {
   switch (mapping.format) {
-    case FileFormat::noraxon: return open_noraxon(file);
-    case FileFormat::opensim: return open_storage(file);
-    case FileFormat::csv: break;
+    case FileFormat::noraxon:
+      return open_noraxon(file);
+    case FileFormat::opensim:
+      return open_storage(file);
+    case FileFormat::csv:
+      break;
   }
   return open_csv(file, mapping.csv);
 }
@@ -50,25 +53,36 @@ const char* name_of(FileFormat format) {
 /// A unit of the dimension a quantity must have; empty: any.
 const char* unit_of(Quantity quantity) {
   switch (quantity) {
-    case Quantity::emg: return "V";
+    case Quantity::emg:
+      return "V";
     case Quantity::excitation:
     case Quantity::activation:
-    case Quantity::orientation: return "1";
+    case Quantity::orientation:
+      return "1";
     case Quantity::joint_angle:
-    case Quantity::dynamometer_angle: return "rad";
+    case Quantity::dynamometer_angle:
+      return "rad";
     case Quantity::joint_velocity:
-    case Quantity::dynamometer_velocity: return "rad/s";
-    case Quantity::joint_acceleration: return "rad/s^2";
+    case Quantity::dynamometer_velocity:
+      return "rad/s";
+    case Quantity::joint_acceleration:
+      return "rad/s^2";
     case Quantity::joint_moment:
-    case Quantity::dynamometer_torque: return "N m";
-    case Quantity::muscle_force: return "N";
+    case Quantity::dynamometer_torque:
+      return "N m";
+    case Quantity::muscle_force:
+      return "N";
     case Quantity::fibre_length:
     case Quantity::moment_arm:
     case Quantity::muscle_tendon_length:
-    case Quantity::position: return "m";
-    case Quantity::fibre_velocity: return "m/s";
-    case Quantity::acceleration: return "m/s^2";
-    case Quantity::other: break;
+    case Quantity::position:
+      return "m";
+    case Quantity::fibre_velocity:
+      return "m/s";
+    case Quantity::acceleration:
+      return "m/s^2";
+    case Quantity::other:
+      break;
   }
   return "";
 }
@@ -76,22 +90,26 @@ const char* unit_of(Quantity quantity) {
 /// The unit of a column: what the description says and what the file says must agree.
 data::Unit agreed_unit(const SignalMapping& mapping, const RecordingColumn& column, const std::string& file) {
   if (mapping.unit.empty() && column.unit.empty()) {
-    throw InputError("missing-unit", fmt::format("the unit of column `{}` of `{}` is not known", column.name, file), "give it with `unit`");
+    throw InputError("missing-unit",
+                     fmt::format("the unit of column `{}` of `{}` is not known", column.name, file),
+                     "give it with `unit`");
   }
   const data::Unit unit = data::parse_unit(mapping.unit.empty() ? column.unit : mapping.unit);
   if (!mapping.unit.empty() && !column.unit.empty()) {
     const data::Unit stated = data::parse_unit(column.unit);
     if (stated.dimension != unit.dimension || stated.to_si != unit.to_si) {
       throw InputError("wrong-unit",
-                       fmt::format("column `{}` of `{}` is in `{}`, the description says `{}`", column.name, file, column.unit, mapping.unit),
+                       fmt::format("column `{}` of `{}` is in `{}`, the description says `{}`", column.name,
+                                   file, column.unit, mapping.unit),
                        "leave `unit` out to take the file's");
     }
   }
   const std::string wanted = unit_of(mapping.quantity);
   if (!wanted.empty() && data::parse_unit(wanted).dimension != unit.dimension) {
     throw InputError("wrong-unit",
-                     fmt::format("column `{}` of `{}` is in `{}`, a unit of {}, but `{}` needs a unit of {}", column.name, file, unit.symbol,
-                                 unit.dimension, data::to_string(mapping.quantity), data::parse_unit(wanted).dimension),
+                     fmt::format("column `{}` of `{}` is in `{}`, a unit of {}, but `{}` needs a unit of {}",
+                                 column.name, file, unit.symbol, unit.dimension,
+                                 data::to_string(mapping.quantity), data::parse_unit(wanted).dimension),
                      fmt::format("for example `{}`", wanted));
   }
   return unit;
@@ -111,7 +129,8 @@ struct Planner {
     }
   }
 
-  PlannedSignal plan_signal(const ResolvedFile& file, const SignalMapping& mapping, const Recording& recording, std::size_t index) {
+  PlannedSignal plan_signal(const ResolvedFile& file, const SignalMapping& mapping,
+                            const Recording& recording, std::size_t index) {
     const TrialDescription& trial = description.trials[file.trial];
     const FileMapping& from = description.files[file.file];
     const RecordingColumn& column = recording.header().columns[index];
@@ -124,7 +143,9 @@ struct Planner {
     planned.info.name = fill(mapping.name, variables, unknown);
     planned.info.muscle = fill(mapping.muscle, variables, unknown);
     planned.info.coordinate = fill(mapping.coordinate, variables, unknown);
-    if (!unknown.empty()) throw InputError("unknown-variable", fmt::format("`{{{}}}` is not a variable of this trial", unknown.front()));
+    if (!unknown.empty())
+      throw InputError("unknown-variable",
+                       fmt::format("`{{{}}}` is not a variable of this trial", unknown.front()));
     planned.info.quantity = mapping.quantity;
     const data::Unit unit = agreed_unit(mapping, column, relative);
     planned.info.unit = unit.si;
@@ -144,7 +165,8 @@ struct Planner {
                        "a name must not be empty, hold `/`, or be time_<number>");
     }
     if (!names[file.trial].insert(name).second) {
-      throw InputError("duplicate-signal", fmt::format("trial `{}` has two signals `{}`", trial.info.name, name),
+      throw InputError("duplicate-signal",
+                       fmt::format("trial `{}` has two signals `{}`", trial.info.name, name),
                        "give each signal of a trial a name of its own");
     }
     return planned;
@@ -156,8 +178,11 @@ struct Planner {
     if (columns.size() != 1 && mapping.name.find("{column}") == std::string::npos) {
       std::vector<std::string> known;
       for (const RecordingColumn& c : columns) known.push_back(c.name);
-      throw InputError("ambiguous-column", fmt::format("`{}` has {} columns, but one signal is named", recording.file().string(), columns.size()),
-                       fmt::format("say which `column`, or put {{column}} into `name`; {}", data::suggest("", known)));
+      throw InputError(
+          "ambiguous-column",
+          fmt::format("`{}` has {} columns, but one signal is named", recording.file().string(),
+                      columns.size()),
+          fmt::format("say which `column`, or put {{column}} into `name`; {}", data::suggest("", known)));
     }
     std::vector<std::size_t> all(columns.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -172,7 +197,8 @@ struct Planner {
       warnings.insert(warnings.end(), recording.header().notes.begin(), recording.header().notes.end());
       for (const SignalMapping& signal : mapping.signals) {
         try {
-          for (const std::size_t column : columns_of(signal, recording)) planned.signals.push_back(plan_signal(file, signal, recording, column));
+          for (const std::size_t column : columns_of(signal, recording))
+            planned.signals.push_back(plan_signal(file, signal, recording, column));
         } catch (const InputError& error) {
           add_mistakes(error, signal.where);
         }
@@ -206,12 +232,14 @@ void to_sink(Action action) {
   }
 }
 
-void import_file(const PlannedFile& planned, const FileMapping& mapping, const std::string& trial, data::SessionSink& sink,
-                 std::vector<Diagnostic>& warnings, const std::function<void(double)>& progress) {
+void import_file(const PlannedFile& planned, const FileMapping& mapping, const std::string& trial,
+                 data::SessionSink& sink, std::vector<Diagnostic>& warnings,
+                 const std::function<void(double)>& progress) {
   Recording recording = open(mapping, planned.file.path);
   const Timing timing = check_timing(recording, mapping.timing, warnings);
   std::vector<std::size_t> columns;
-  std::vector<double> lowest(planned.signals.size(), std::numeric_limits<double>::infinity()), highest(lowest.size(), -lowest[0]);
+  std::vector<double> lowest(planned.signals.size(), std::numeric_limits<double>::infinity()),
+      highest(lowest.size(), -lowest[0]);
   std::vector<double> scaled;
   for (const PlannedSignal& signal : planned.signals) {
     SignalInfo info = signal.info;
@@ -219,32 +247,35 @@ void import_file(const PlannedFile& planned, const FileMapping& mapping, const s
     info.start_time_s = timing.start_time_s + mapping.time_offset_s;
     info.count = timing.samples;
     if (mapping.timing.rule == TimingRule::interpolate && (timing.gaps > 0 || timing.largest_jitter > 0.0)) {
-      info.attributes["bridged"] = fmt::format("{} gaps (longest {:.6g} s) and time stamps up to {:.3g} sample periods off, by straight lines",
-                                               timing.gaps, timing.longest_gap_s, timing.largest_jitter);
+      info.attributes["bridged"] = fmt::format(
+          "{} gaps (longest {:.6g} s) and time stamps up to {:.3g} sample periods off, by straight lines",
+          timing.gaps, timing.longest_gap_s, timing.largest_jitter);
     }
     to_sink([&] { sink.begin_signal(trial, info); });
     columns.push_back(signal.column);
   }
-  stream_columns(recording, timing, mapping.timing.rule, columns, [&](std::size_t first, std::span<const std::vector<double>> block) {
-    for (std::size_t s = 0; s < planned.signals.size(); ++s) {
-      const PlannedSignal& signal = planned.signals[s];
-      scaled.resize(block[s].size());
-      for (std::size_t i = 0; i < scaled.size(); ++i) {
-        const double raw = block[s][i];
-        lowest[s] = std::min(lowest[s], raw);
-        highest[s] = std::max(highest[s], raw);
-        scaled[i] = signal.factor * raw + signal.offset;
-      }
-      to_sink([&] { sink.write_samples(trial, signal.info.name, first, scaled); });
-    }
-    progress(recording.bytes_read_fraction());
-  });
+  stream_columns(recording, timing, mapping.timing.rule, columns,
+                 [&](std::size_t first, std::span<const std::vector<double>> block) {
+                   for (std::size_t s = 0; s < planned.signals.size(); ++s) {
+                     const PlannedSignal& signal = planned.signals[s];
+                     scaled.resize(block[s].size());
+                     for (std::size_t i = 0; i < scaled.size(); ++i) {
+                       const double raw = block[s][i];
+                       lowest[s] = std::min(lowest[s], raw);
+                       highest[s] = std::max(highest[s], raw);
+                       scaled[i] = signal.factor * raw + signal.offset;
+                     }
+                     to_sink([&] { sink.write_samples(trial, signal.info.name, first, scaled); });
+                   }
+                   progress(recording.bytes_read_fraction());
+                 });
   for (std::size_t s = 0; s < planned.signals.size(); ++s) {
     if (lowest[s] < highest[s] || timing.rows < 2) continue;
-    warnings.push_back({Severity::warning, "constant-signal",
-                        fmt::format("signal `{}` of trial `{}` never changes from {} {}", planned.signals[s].info.name, trial, lowest[s],
-                                    planned.signals[s].info.attributes.at("source_unit")),
-                        data::SourceSpan{planned.file.path.string(), 0, 0, 1, {}}, "was the sensor connected?"});
+    warnings.push_back(
+        {Severity::warning, "constant-signal",
+         fmt::format("signal `{}` of trial `{}` never changes from {} {}", planned.signals[s].info.name,
+                     trial, lowest[s], planned.signals[s].info.attributes.at("source_unit")),
+         data::SourceSpan{planned.file.path.string(), 0, 0, 1, {}}, "was the sensor connected?"});
   }
 }
 
@@ -256,8 +287,9 @@ std::vector<Diagnostic> check_session(const SessionDescription& description) {
   return planner.warnings;
 }
 
-std::vector<Diagnostic> import_session(const SessionDescription& description, data::SessionSink& sink,
-                                       const std::function<void(double fraction, const std::string& what)>& progress) {
+std::vector<Diagnostic> import_session(
+    const SessionDescription& description, data::SessionSink& sink,
+    const std::function<void(double fraction, const std::string& what)>& progress) {
   Planner planner{description, {}, {}, {}};
   const std::vector<PlannedFile> files = planner.plan();
   std::vector<Diagnostic> warnings = std::move(planner.warnings), mistakes;
@@ -273,7 +305,9 @@ std::vector<Diagnostic> import_session(const SessionDescription& description, da
   for (std::size_t f = 0; f < files.size(); ++f) {
     const std::string& trial = description.trials[files[f].file.trial].info.name;
     const auto report = [&](double part) {
-      if (progress) progress((bytes_done + part * bytes[f]) / bytes_total, fmt::format("{}: {}", trial, files[f].file.path.filename().string()));
+      if (progress)
+        progress((bytes_done + part * bytes[f]) / bytes_total,
+                 fmt::format("{}: {}", trial, files[f].file.path.filename().string()));
     };
     try {
       import_file(files[f], description.files[files[f].file.file], trial, sink, warnings, report);

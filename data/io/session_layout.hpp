@@ -12,7 +12,8 @@ inline constexpr int version = 1;
 inline const std::string attribute = "attribute.";
 inline const std::string condition = "condition.";
 inline const std::string anthropometry = "anthropometry.";
-inline constexpr const char* help = "the layout is described in data/io/README.md; import the recordings again";
+inline constexpr const char* help =
+    "the layout is described in data/io/README.md; import the recordings again";
 
 /// time_<digits>: a dimension scale, not a signal.
 inline bool is_time_name(const std::string& name) {

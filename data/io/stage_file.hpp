@@ -44,6 +44,7 @@ class StageFileWriter final : public SessionFileWriter {
 StageFileContent read_stage_content(const std::filesystem::path& file);
 
 /// The fingerprint alone, or nothing if the file is absent, damaged or not a stage's output.
-std::optional<std::map<std::string, std::string>> read_fingerprint(const std::filesystem::path& file) noexcept;
+std::optional<std::map<std::string, std::string>> read_fingerprint(
+    const std::filesystem::path& file) noexcept;
 
 }  // namespace brachium::io

@@ -28,7 +28,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 template <class Struct>
 struct Field {
   const char* key;
-  double Struct::* value;
+  double Struct::*value;
   double lower, upper;
   bool lower_open, upper_open;
 };
@@ -37,8 +37,10 @@ constexpr Field<MuscleParameters> muscle_fields[] = {
     {"max_isometric_force_N", &MuscleParameters::max_isometric_force_N, 0.0, infinity, true, true},
     {"optimal_fibre_length_m", &MuscleParameters::optimal_fibre_length_m, 0.0, infinity, true, true},
     {"tendon_slack_length_m", &MuscleParameters::tendon_slack_length_m, 0.0, infinity, false, true},
-    {"pennation_at_optimal_rad", &MuscleParameters::pennation_at_optimal_rad, 0.0, std::numbers::pi / 2.0, false, true},
-    {"max_contraction_velocity_per_s", &MuscleParameters::max_contraction_velocity, 0.0, infinity, true, true},
+    {"pennation_at_optimal_rad", &MuscleParameters::pennation_at_optimal_rad, 0.0, std::numbers::pi / 2.0,
+     false, true},
+    {"max_contraction_velocity_per_s", &MuscleParameters::max_contraction_velocity, 0.0, infinity, true,
+     true},
     {"fibre_damping_norm", &MuscleParameters::fibre_damping, 0.0, infinity, false, true},
     {"strength", &MuscleParameters::strength, 0.0, infinity, true, true},
 };
@@ -52,7 +54,7 @@ constexpr Field<ActivationParameters> activation_fields[] = {
 
 struct VerdictNumber {
   const char* key;
-  double ParameterVerdict::* value;
+  double ParameterVerdict::*value;
   bool may_be_infinite;
 };
 constexpr VerdictNumber verdict_numbers[] = {
@@ -68,11 +70,11 @@ constexpr VerdictNumber verdict_numbers[] = {
 
 struct VerdictText {
   const char* key;
-  std::string ParameterVerdict::* value;
+  std::string ParameterVerdict::*value;
 };
 constexpr VerdictText verdict_texts[] = {
-    {"muscle", &ParameterVerdict::muscle},   {"parameter", &ParameterVerdict::parameter},
-    {"unit", &ParameterVerdict::unit},       {"verdict", &ParameterVerdict::verdict},
+    {"muscle", &ParameterVerdict::muscle}, {"parameter", &ParameterVerdict::parameter},
+    {"unit", &ParameterVerdict::unit},     {"verdict", &ParameterVerdict::verdict},
     {"remark", &ParameterVerdict::remark},
 };
 
@@ -90,10 +92,11 @@ void read_fields(TomlTable& table, const Field<Struct> (&fields)[n], Struct& to)
     const bool above = field.lower_open ? v > field.lower : v >= field.lower;
     const bool below = field.upper_open ? v < field.upper : v <= field.upper;
     if (!(above && below)) {
-      table.error("out-of-range",
-                  fmt::format("`{}` must lie in {}{}, {}{}, not be {}", field.key, field.lower_open ? "(" : "[", field.lower,
-                              field.upper, field.upper_open ? ")" : "]", v),
-                  field.key);
+      table.error(
+          "out-of-range",
+          fmt::format("`{}` must lie in {}{}, {}{}, not be {}", field.key, field.lower_open ? "(" : "[",
+                      field.lower, field.upper, field.upper_open ? ")" : "]", v),
+          field.key);
     }
   }
 }
@@ -200,14 +203,16 @@ Subject parse_subject(const std::string& toml, const std::string& file_name) {
   Subject subject;
   const std::string found = root.text("format").value_or("");
   if (found != format) {
-    throw data::InputError(data::Diagnostic{data::Severity::error, "wrong-format",
-                                            fmt::format("`{}` is not a calibrated subject (no `format = \"{}\"`)", file_name, format),
-                                            root.span_of("format"), "give the file that a calibration wrote"});
+    throw data::InputError(data::Diagnostic{
+        data::Severity::error, "wrong-format",
+        fmt::format("`{}` is not a calibrated subject (no `format = \"{}\"`)", file_name, format),
+        root.span_of("format"), "give the file that a calibration wrote"});
   }
   if (root.integer("format_version").value_or(0) != version) {
-    throw data::InputError(data::Diagnostic{data::Severity::error, "wrong-version",
-                                            fmt::format("only version {} of subject files can be read", version),
-                                            root.span_of("format_version"), "calibrate again with this version of the program"});
+    throw data::InputError(
+        data::Diagnostic{data::Severity::error, "wrong-version",
+                         fmt::format("only version {} of subject files can be read", version),
+                         root.span_of("format_version"), "calibrate again with this version of the program"});
   }
   subject.name = root.require_text("name");
   read_map(root, "provenance", subject.provenance);
@@ -218,7 +223,8 @@ Subject parse_subject(const std::string& toml, const std::string& file_name) {
   for (TomlTable& table : root.tables("muscle")) {
     subject.muscles.push_back(read_muscle(table));
     const std::string& name = subject.muscles.back().name;
-    if (!names.insert(name).second) table.error("duplicate-muscle", fmt::format("there are two muscles `{}`", name), "name");
+    if (!names.insert(name).second)
+      table.error("duplicate-muscle", fmt::format("there are two muscles `{}`", name), "name");
   }
   for (TomlTable& table : root.tables("verdict")) subject.verdicts.push_back(read_verdict(table));
   root.finish();
@@ -230,6 +236,8 @@ void write_subject(const Subject& subject, const std::filesystem::path& file) {
   write_text_atomically(file, subject_to_toml(subject));
 }
 
-Subject read_subject(const std::filesystem::path& file) { return parse_subject(read_text(file), file.string()); }
+Subject read_subject(const std::filesystem::path& file) {
+  return parse_subject(read_text(file), file.string());
+}
 
 }  // namespace brachium::io

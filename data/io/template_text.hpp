@@ -9,6 +9,7 @@
 namespace brachium::io {
 
 /// `text` with every {name} replaced; names without a value are added to `unknown` and left as they are.
-std::string fill(const std::string& text, const std::map<std::string, std::string>& variables, std::vector<std::string>& unknown);
+std::string fill(const std::string& text, const std::map<std::string, std::string>& variables,
+                 std::vector<std::string>& unknown);
 
 }  // namespace brachium::io

@@ -19,16 +19,19 @@ constexpr std::size_t longest_line = std::size_t{1} << 24;
 TextLines::TextLines(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {
   std::error_code error;
   if (!stream_ || !std::filesystem::is_regular_file(file, error)) {
-    throw InputError("missing-file", fmt::format("cannot read `{}`", file.string()), "check the path and its permissions");
+    throw InputError("missing-file", fmt::format("cannot read `{}`", file.string()),
+                     "check the path and its permissions");
   }
   size_ = std::filesystem::file_size(file, error);
   buffer_.resize(block_bytes);
   refill();
-  if (end_ >= 2 && ((buffer_[0] == '\xFF' && buffer_[1] == '\xFE') || (buffer_[0] == '\xFE' && buffer_[1] == '\xFF'))) {
+  if (end_ >= 2 &&
+      ((buffer_[0] == '\xFF' && buffer_[1] == '\xFE') || (buffer_[0] == '\xFE' && buffer_[1] == '\xFF'))) {
     throw InputError("wrong-encoding", fmt::format("`{}` is UTF-16 text", file.string()), "save it as UTF-8");
   }
   if (end_ >= 3 && std::memcmp(buffer_.data(), "\xEF\xBB\xBF", 3) == 0) at_ = 3;
-  if (std::all_of(buffer_.begin() + static_cast<std::ptrdiff_t>(at_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_),
+  if (std::all_of(buffer_.begin() + static_cast<std::ptrdiff_t>(at_),
+                  buffer_.begin() + static_cast<std::ptrdiff_t>(end_),
                   [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }) &&
       end_ == size_) {
     throw InputError("empty-file", fmt::format("`{}` is empty", file.string()), "export the recording again");
@@ -62,7 +65,8 @@ bool TextLines::next(std::string_view& line) {
     }
     searched = end_ - at_;
     if (searched > longest_line) {
-      throw InputError("not-text", fmt::format("`{}` is not a text table: line {} does not end", file_.string(), line_ + 1));
+      throw InputError("not-text", fmt::format("`{}` is not a text table: line {} does not end",
+                                               file_.string(), line_ + 1));
     }
     if (refill()) continue;
     if (at_ == end_) return false;
@@ -73,7 +77,8 @@ bool TextLines::next(std::string_view& line) {
   ++line_;
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   if (std::memchr(line.data(), '\0', line.size())) {
-    throw InputError("not-text", fmt::format("`{}` is not a text table: line {} holds a null byte", file_.string(), line_));
+    throw InputError("not-text", fmt::format("`{}` is not a text table: line {} holds a null byte",
+                                             file_.string(), line_));
   }
   return true;
 }

@@ -13,10 +13,11 @@
 namespace brachium::data {
 namespace {
 
-constexpr double grid_tolerance = 1e-6;          // [sample periods]
-constexpr std::size_t most_phases = 4096;        // filters kept for one pair of rates
+constexpr double grid_tolerance = 1e-6;    // [sample periods]
+constexpr std::size_t most_phases = 4096;  // filters kept for one pair of rates
 
-/// Modified Bessel function of the first kind and order 0, by its power series (all terms positive: no cancellation).
+/// Modified Bessel function of the first kind and order 0, by its power series (all terms positive: no
+/// cancellation).
 double bessel_i0(double x) {
   double term = 1.0, sum = 1.0;
   for (int k = 1; term > 1e-18 * sum; ++k) {
@@ -77,28 +78,35 @@ double apply(const Taps& taps, std::span<const double> x, std::ptrdiff_t at) {
     for (std::ptrdiff_t k = 0; k < m; ++k) sum += taps.weights[static_cast<std::size_t>(k)] * from[k];
     return sum;
   }
-  for (std::ptrdiff_t k = 0; k < m; ++k) sum += taps.weights[static_cast<std::size_t>(k)] * reflected(x, first + k);
+  for (std::ptrdiff_t k = 0; k < m; ++k)
+    sum += taps.weights[static_cast<std::size_t>(k)] * reflected(x, first + k);
   return sum;
 }
 
 [[noreturn]] void outside(const SignalInfo& info, double from_s, double to_s) {
-  throw InputError("outside-signal", fmt::format("signal `{}` lasts from {:.6g} s to {:.6g} s; samples from {:.6g} s to {:.6g} s are wanted",
-                                                 info.name, info.start_time_s, info.end_time_s(), from_s, to_s),
-                   "use the common time span of the signals");
+  throw InputError(
+      "outside-signal",
+      fmt::format("signal `{}` lasts from {:.6g} s to {:.6g} s; samples from {:.6g} s to {:.6g} s are wanted",
+                  info.name, info.start_time_s, info.end_time_s(), from_s, to_s),
+      "use the common time span of the signals");
 }
 
 void check_rate(double rate_hz) {
-  if (!(rate_hz > 0.0) || !std::isfinite(rate_hz)) throw InputError("bad-rate", fmt::format("a rate must be greater than 0, not {} Hz", rate_hz));
+  if (!(rate_hz > 0.0) || !std::isfinite(rate_hz))
+    throw InputError("bad-rate", fmt::format("a rate must be greater than 0, not {} Hz", rate_hz));
 }
 
 void check_samples(const Signal& signal, std::size_t least) {
   if (signal.samples.size() < least) {
-    throw InputError("too-short", fmt::format("signal `{}` has {} samples, at least {} are needed", signal.info.name, signal.samples.size(), least));
+    throw InputError("too-short", fmt::format("signal `{}` has {} samples, at least {} are needed",
+                                              signal.info.name, signal.samples.size(), least));
   }
-  const auto bad = std::find_if(signal.samples.begin(), signal.samples.end(), [](double v) { return !std::isfinite(v); });
+  const auto bad =
+      std::find_if(signal.samples.begin(), signal.samples.end(), [](double v) { return !std::isfinite(v); });
   if (bad == signal.samples.end()) return;
-  throw InputError("non-finite-sample", fmt::format("signal `{}` has {} at {:.6g} s", signal.info.name, *bad,
-                                                    signal.info.time_s(static_cast<std::size_t>(bad - signal.samples.begin()))));
+  throw InputError("non-finite-sample",
+                   fmt::format("signal `{}` has {} at {:.6g} s", signal.info.name, *bad,
+                               signal.info.time_s(static_cast<std::size_t>(bad - signal.samples.begin()))));
 }
 
 /// Whole and fractional part of a position, where a position within tolerance of a sample is that sample.
@@ -118,7 +126,8 @@ ResampleFilter design_resampling(double from_hz, double to_hz, const ResampleOpt
   if (!(options.passband > 0.0 && options.passband < 1.0)) {
     throw InputError("bad-option", fmt::format("`passband` must lie in (0, 1), not be {}", options.passband));
   }
-  if (!(a >= 30.0 && a <= 160.0)) throw InputError("bad-option", fmt::format("`attenuation_db` must lie in [30, 160], not be {}", a));
+  if (!(a >= 30.0 && a <= 160.0))
+    throw InputError("bad-option", fmt::format("`attenuation_db` must lie in [30, 160], not be {}", a));
   ResampleFilter filter;
   filter.stopband_hz = 0.5 * std::min(from_hz, to_hz);
   filter.passband_hz = options.passband * filter.stopband_hz;
@@ -135,7 +144,8 @@ Signal resample(const Signal& signal, const TimeGrid& grid, const ResampleOption
   check_rate(signal.info.rate_hz);
   check_samples(signal, 2);
   const double from_hz = signal.info.rate_hz;
-  const double origin = (grid.start_s - signal.info.start_time_s) * from_hz;  // position of output 0 [input samples]
+  const double origin =
+      (grid.start_s - signal.info.start_time_s) * from_hz;  // position of output 0 [input samples]
   const double step = from_hz / grid.rate_hz;
   const double end = origin + step * (grid.count == 0 ? 0.0 : static_cast<double>(grid.count - 1));
   const auto last = static_cast<double>(signal.samples.size() - 1);
@@ -146,7 +156,8 @@ Signal resample(const Signal& signal, const TimeGrid& grid, const ResampleOption
   out.info.rate_hz = grid.rate_hz;
   out.info.start_time_s = grid.start_s;
   out.info.count = grid.count;
-  if (std::abs(end - origin - static_cast<double>(grid.count - 1)) <= grid_tolerance && split(origin).second == 0.0) {
+  if (std::abs(end - origin - static_cast<double>(grid.count - 1)) <= grid_tolerance &&
+      split(origin).second == 0.0) {
     std::copy_n(signal.samples.begin() + split(origin).first, grid.count, out.samples.begin());
     return out;
   }
@@ -164,10 +175,12 @@ Signal resample(const Signal& signal, const TimeGrid& grid, const ResampleOption
     }
     out.samples[j] = apply(found->second, signal.samples, at);
   }
-  out.info.attributes["resampled"] =
-      fmt::format("from {:.9g} Hz to {:.9g} Hz by a Kaiser-windowed sinc (gain 1 up to {:.6g} Hz, -{:.6g} dB from {:.6g} Hz, beta {:.4g}, "
-                  "{:.4g} s to each side); point reflection at both ends",
-                  from_hz, grid.rate_hz, filter.passband_hz, filter.attenuation_db, filter.stopband_hz, filter.beta, filter.half_width_s);
+  out.info.attributes["resampled"] = fmt::format(
+      "from {:.9g} Hz to {:.9g} Hz by a Kaiser-windowed sinc (gain 1 up to {:.6g} Hz, -{:.6g} dB from {:.6g} "
+      "Hz, beta {:.4g}, "
+      "{:.4g} s to each side); point reflection at both ends",
+      from_hz, grid.rate_hz, filter.passband_hz, filter.attenuation_db, filter.stopband_hz, filter.beta,
+      filter.half_width_s);
   return out;
 }
 
@@ -184,9 +197,12 @@ TimeGrid common_grid(std::span<const SignalInfo> signals, double rate_hz) {
   // Rounding of time stamps must not cost a sample.
   const double steps = std::floor((end - start) * rate_hz + grid_tolerance);
   if (!(steps >= 0.0)) {
-    throw InputError("no-common-window", fmt::format("signals `{}` and `{}` do not overlap in time: one ends at {:.6g} s, the other begins at {:.6g} s",
-                                                     earliest->name, latest->name, end, start),
-                     "check the start times; `time_offset_s` of a session description moves a recorder's clock");
+    throw InputError(
+        "no-common-window",
+        fmt::format("signals `{}` and `{}` do not overlap in time: one ends at {:.6g} s, the other begins at "
+                    "{:.6g} s",
+                    earliest->name, latest->name, end, start),
+        "check the start times; `time_offset_s` of a session description moves a recorder's clock");
   }
   return {rate_hz, start, static_cast<std::size_t>(steps) + 1};
 }
@@ -203,7 +219,8 @@ std::vector<Signal> align(std::span<const Signal> signals, double rate_hz, const
   return out;
 }
 
-std::vector<double> evaluate_at(const Signal& signal, std::span<const double> times_s, Interpolation interpolation) {
+std::vector<double> evaluate_at(const Signal& signal, std::span<const double> times_s,
+                                Interpolation interpolation) {
   const std::size_t order = interpolation == Interpolation::cubic ? 3 : 1;
   check_samples(signal, order + 1);
   check_rate(signal.info.rate_hz);
@@ -223,10 +240,12 @@ std::vector<double> evaluate_at(const Signal& signal, std::span<const double> ti
     }
     // The four samples around p, shifted inwards at the ends.
     const auto below = static_cast<std::ptrdiff_t>(p);
-    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(below - 1, 0, static_cast<std::ptrdiff_t>(x.size()) - 4));
+    const auto i = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(below - 1, 0, static_cast<std::ptrdiff_t>(x.size()) - 4));
     const double u = p - static_cast<double>(i);  // in [0, 3]
     const double u1 = u - 1.0, u2 = u - 2.0, u3 = u - 3.0;
-    out.push_back(-x[i] * u1 * u2 * u3 / 6.0 + x[i + 1] * u * u2 * u3 / 2.0 - x[i + 2] * u * u1 * u3 / 2.0 + x[i + 3] * u * u1 * u2 / 6.0);
+    out.push_back(-x[i] * u1 * u2 * u3 / 6.0 + x[i + 1] * u * u2 * u3 / 2.0 - x[i + 2] * u * u1 * u3 / 2.0 +
+                  x[i + 3] * u * u1 * u2 / 6.0);
   }
   return out;
 }

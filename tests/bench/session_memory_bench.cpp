@@ -27,7 +27,9 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 void write_recording(const std::filesystem::path& file, std::size_t rows, int channels, double rate_hz) {
   std::ofstream out(file, std::ios::binary);
@@ -36,7 +38,8 @@ void write_recording(const std::filesystem::path& file, std::size_t rows, int ch
   text += "\n";
   for (std::size_t i = 0; i < rows; ++i) {
     text += fmt::format("{:.4f}", static_cast<double>(i) / rate_hz);
-    for (int c = 0; c < channels; ++c) text += fmt::format(",{:.3f}", 100.0 * std::sin(0.01 * static_cast<double>(i % 100003) * (c + 1)));
+    for (int c = 0; c < channels; ++c)
+      text += fmt::format(",{:.3f}", 100.0 * std::sin(0.01 * static_cast<double>(i % 100003) * (c + 1)));
     text += "\n";
     if (text.size() > (1u << 20) || i + 1 == rows) {
       out << text;
@@ -57,9 +60,12 @@ int main(int argc, char** argv) {
   const int channels = argc > 3 ? std::atoi(argv[3]) : 16;
   const double rate_hz = argc > 4 ? std::atof(argv[4]) : 2000.0;
   const auto rows = static_cast<std::size_t>(minutes * 60.0 * rate_hz);
-  if (!std::filesystem::exists(folder / "long.csv")) write_recording(folder / "long.csv", rows, channels, rate_hz);
-  std::ofstream(folder / "long.toml") << "[session]\nsubject = \"long\"\n[[trial]]\nname = \"long\"\nkind = \"test\"\n"
-                                         "[[file]]\npath = \"long.csv\"\ntime = \"time\"\nname = \"{column}\"\nquantity = \"emg\"\nunit = \"uV\"\n";
+  if (!std::filesystem::exists(folder / "long.csv"))
+    write_recording(folder / "long.csv", rows, channels, rate_hz);
+  std::ofstream(folder / "long.toml")
+      << "[session]\nsubject = \"long\"\n[[trial]]\nname = \"long\"\nkind = \"test\"\n"
+         "[[file]]\npath = \"long.csv\"\ntime = \"time\"\nname = \"{column}\"\nquantity = \"emg\"\nunit = "
+         "\"uV\"\n";
   double begin = seconds();
   {
     io::SessionFileWriter writer(folder / "long.h5");
@@ -80,9 +86,11 @@ int main(int argc, char** argv) {
       for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(piece[i]));
     }
   }
-  std::printf("read by pieces: %.1f s, largest sample %.3g V, peak memory %.0f MB\n", seconds() - begin, largest, peak_megabytes());
+  std::printf("read by pieces: %.1f s, largest sample %.3g V, peak memory %.0f MB\n", seconds() - begin,
+              largest, peak_megabytes());
   begin = seconds();
-  for (std::size_t s = 0; s < session.info().trials[0].signals.size(); ++s) largest = std::max(largest, session.signal(0, s).samples.back());
+  for (std::size_t s = 0; s < session.info().trials[0].signals.size(); ++s)
+    largest = std::max(largest, session.signal(0, s).samples.back());
   std::printf("read by signals: %.1f s, peak memory %.0f MB\n", seconds() - begin, peak_megabytes());
   return 0;
 }

@@ -1,5 +1,5 @@
-/// Damaged files of every text format: a reader gives numbers or an InputError, never a crash, never NaN, never another
-/// exception. The mutations are the same in every run.
+/// Damaged files of every text format: a reader gives numbers or an InputError, never a crash, never NaN,
+/// never another exception. The mutations are the same in every run.
 
 #include <gtest/gtest.h>
 
@@ -23,14 +23,36 @@ std::string damaged(const std::string& text, unsigned seed) {
   std::mt19937 random(seed);
   std::string out = text;
   const auto place = [&] { return out.empty() ? 0 : static_cast<std::size_t>(random() % out.size()); };
-  static const std::string pieces[] = {"nan", "-inf", "1e999", "\"", ",,,,", "\t\t", "\n\n", "=", "[[", "{x}", "endheader\n",
-                                       "-", "0x1p3", "9999999999999999999999", std::string(1, '\0'), "\xFF\xFE", "time", "\r"};
+  static const std::string pieces[] = {"nan",
+                                       "-inf",
+                                       "1e999",
+                                       "\"",
+                                       ",,,,",
+                                       "\t\t",
+                                       "\n\n",
+                                       "=",
+                                       "[[",
+                                       "{x}",
+                                       "endheader\n",
+                                       "-",
+                                       "0x1p3",
+                                       "9999999999999999999999",
+                                       std::string(1, '\0'),
+                                       "\xFF\xFE",
+                                       "time",
+                                       "\r"};
   const unsigned times = 1 + random() % 3;
   for (unsigned n = 0; n < times; ++n) {
     switch (random() % 6) {
-      case 0: out.resize(place()); break;
-      case 1: out[place()] = static_cast<char>(random() % 256); break;
-      case 2: out.insert(place(), pieces[random() % std::size(pieces)]); break;
+      case 0:
+        out.resize(place());
+        break;
+      case 1:
+        out[place()] = static_cast<char>(random() % 256);
+        break;
+      case 2:
+        out.insert(place(), pieces[random() % std::size(pieces)]);
+        break;
       case 3: {
         const std::size_t at = place();
         out.erase(at, random() % 40);
@@ -99,7 +121,10 @@ TEST(Fuzz, Csv) {
 }
 
 TEST(Fuzz, Noraxon) {
-  survive("a.csv", "\xEF\xBB\xBFtype,name,time_units,begin_time,frequency,count,units\nsignal_3d,\"x\",\"s\",0.0,10,30,\"mm\"\n\ntime,x,y,z\n" + rows(",", 4),
+  survive("a.csv",
+          "\xEF\xBB\xBFtype,name,time_units,begin_time,frequency,count,units\nsignal_3d,\"x\",\"s\",0.0,10,"
+          "30,\"mm\"\n\ntime,x,y,z\n" +
+              rows(",", 4),
           1500, [](const auto& file) {
             Recording recording = open_noraxon(file);
             expect_finite(read_all(recording));
@@ -107,11 +132,14 @@ TEST(Fuzz, Noraxon) {
 }
 
 TEST(Fuzz, Storage) {
-  survive("a.sto", "Results\nversion=1\nnRows=30\nnColumns=3\ninDegrees=yes\n\nUnits are S.I.\nendheader\ntime\ta\tb\n" + rows("\t", 3), 1500,
-          [](const auto& file) {
-            Recording recording = open_storage(file);
-            expect_finite(read_all(recording));
-          });
+  survive(
+      "a.sto",
+      "Results\nversion=1\nnRows=30\nnColumns=3\ninDegrees=yes\n\nUnits are S.I.\nendheader\ntime\ta\tb\n" +
+          rows("\t", 3),
+      1500, [](const auto& file) {
+        Recording recording = open_storage(file);
+        expect_finite(read_all(recording));
+      });
 }
 
 TEST(Fuzz, StorageWithBridgedTimeStamps) {
@@ -134,7 +162,8 @@ TEST(Fuzz, Subject) {
   data::Subject subject;
   subject.name = "s";
   subject.muscles.push_back({"B", "flexors", {600.0, 0.1, 0.2, 0.1, 10.0, 0.1, 1.0}, {}});
-  subject.verdicts.push_back({"B", "strength", "1", 1.0, 1.1, 0.5, 2.0, 0.1, 0.9, 1.3, 0.0, "identified", ""});
+  subject.verdicts.push_back(
+      {"B", "strength", "1", 1.0, 1.1, 0.5, 2.0, 0.1, 0.9, 1.3, 0.0, "identified", ""});
   survive("s.toml", subject_to_toml(subject), 1000, [](const auto& file) { read_subject(file); });
 }
 

@@ -47,7 +47,8 @@ TEST(ElbowCurls, TheSixNoraxonTrialsAreImportedAsTheyAre) {
   const data::Signal angle = memory.signal("curl-5.5lb-2", "elbow_flexion");
   EXPECT_DOUBLE_EQ(angle.samples[0], -0.5168018801 * M_PI / 180.0);
   EXPECT_DOUBLE_EQ(memory.signal("curl-5.5lb-2", "forearm_orientation_w").samples[0], 0.7076646696);
-  EXPECT_DOUBLE_EQ(memory.signal("curl-5.5lb-2", "forearm_acceleration_x").samples[0], -17.53412615e-3 * 9.80665);
+  EXPECT_DOUBLE_EQ(memory.signal("curl-5.5lb-2", "forearm_acceleration_x").samples[0],
+                   -17.53412615e-3 * 9.80665);
   EXPECT_DOUBLE_EQ(memory.signal("curl-5.5lb-2", "ulnar_styloid_position_z").samples[0], 0.9057129661);
 }
 
@@ -57,7 +58,8 @@ TEST(ElbowCurls, QuaternionsAreOfUnitLengthAndTheForearmDoesNotStretch) {
   import_session(elbow_curls(), memory);
   for (const data::TrialInfo& trial : memory.info().trials) {
     std::vector<std::vector<double>> q, elbow, wrist;
-    for (const char* axis : {"x", "y", "z", "w"}) q.push_back(memory.signal(trial.name, std::string("forearm_orientation_") + axis).samples);
+    for (const char* axis : {"x", "y", "z", "w"})
+      q.push_back(memory.signal(trial.name, std::string("forearm_orientation_") + axis).samples);
     for (const char* axis : {"x", "y", "z"}) {
       elbow.push_back(memory.signal(trial.name, std::string("elbow_position_") + axis).samples);
       wrist.push_back(memory.signal(trial.name, std::string("ulnar_styloid_position_") + axis).samples);
@@ -65,7 +67,8 @@ TEST(ElbowCurls, QuaternionsAreOfUnitLengthAndTheForearmDoesNotStretch) {
     double shortest = 1e9, longest = 0.0;
     for (std::size_t i = 0; i < q[0].size(); ++i) {
       ASSERT_NEAR(std::hypot(std::hypot(q[0][i], q[1][i]), std::hypot(q[2][i], q[3][i])), 1.0, 1e-6);
-      const double length = std::hypot(wrist[0][i] - elbow[0][i], wrist[1][i] - elbow[1][i], wrist[2][i] - elbow[2][i]);
+      const double length =
+          std::hypot(wrist[0][i] - elbow[0][i], wrist[1][i] - elbow[1][i], wrist[2][i] - elbow[2][i]);
       shortest = std::min(shortest, length);
       longest = std::max(longest, length);
     }
@@ -86,8 +89,8 @@ TEST(ElbowCurls, TheSessionFileHoldsWhatWasImported) {
 }
 
 TEST(ElbowCurls, WithoutTheRecordingsTheMessageSaysHowToGiveThem) {
-  const SessionDescription description = read_session_description(tests::source_dir() / "pipelines/sessions/elbow_curls.toml",
-                                                                  {{"recordings", "/no/such/folder"}});
+  const SessionDescription description = read_session_description(
+      tests::source_dir() / "pipelines/sessions/elbow_curls.toml", {{"recordings", "/no/such/folder"}});
   EXPECT_EQ(tests::error_of([&] { resolve_files(description); }),
             "error[missing-folder]: there is no folder of recordings `/no/such/folder`\n"
             "  --> --set\n  help: give it with `--set recordings=FOLDER`\n");

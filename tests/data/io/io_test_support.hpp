@@ -27,14 +27,16 @@ inline std::string slurp(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// What the user sees when `action` throws an InputError, with `folder` cut out of paths; "no error" otherwise.
+/// What the user sees when `action` throws an InputError, with `folder` cut out of paths; "no error"
+/// otherwise.
 inline std::string error_of(const std::function<void()>& action, const std::filesystem::path& folder = {}) {
   try {
     action();
   } catch (const data::InputError& error) {
     std::string text = data::render(error.diagnostics());
     const std::string prefix = folder.string() + "/";
-    for (std::size_t at = text.find(prefix); !folder.empty() && at != std::string::npos; at = text.find(prefix, at)) {
+    for (std::size_t at = text.find(prefix); !folder.empty() && at != std::string::npos;
+         at = text.find(prefix, at)) {
       text.erase(at, prefix.size());
     }
     return text;
@@ -42,8 +44,8 @@ inline std::string error_of(const std::function<void()>& action, const std::file
   return "no error";
 }
 
-inline data::Signal make_signal(const std::string& name, data::Quantity quantity, const std::string& unit, double rate_hz,
-                                double start_time_s, std::size_t count) {
+inline data::Signal make_signal(const std::string& name, data::Quantity quantity, const std::string& unit,
+                                double rate_hz, double start_time_s, std::size_t count) {
   data::Signal signal;
   signal.info.name = name;
   signal.info.quantity = quantity;
@@ -62,7 +64,8 @@ inline data::Session small_session() {
   session.subject = "S1 \xC3\xA4";
   session.anthropometry = {{"body_mass_kg", 75.0}, {"height_m", 1.0 / 3.0}};
   session.attributes = {{"source", "made up"}, {"note.with.dots", ""}};
-  data::Trial mvc{"mvc-1", data::TrialKind::mvc, {{"load_mass_kg", 2.5 * 0.45359237}}, {{"operator note", "none"}}, {}};
+  data::Trial mvc{
+      "mvc-1", data::TrialKind::mvc, {{"load_mass_kg", 2.5 * 0.45359237}}, {{"operator note", "none"}}, {}};
   mvc.signals.push_back(make_signal("z_last_by_name", data::Quantity::emg, "V", 2000.0, 0.0, 5000));
   mvc.signals.back().info.muscle = "biceps";
   mvc.signals.back().info.attributes = {{"filter", "none"}, {"source_file", "a.csv"}};
@@ -71,7 +74,8 @@ inline data::Session small_session() {
   mvc.signals.push_back(make_signal("a_first_by_name", data::Quantity::emg, "V", 2000.0, 0.0, 5000));
   session.trials.push_back(std::move(mvc));
   data::Trial test{"a test", data::TrialKind::test, {}, {}, {}};
-  test.signals.push_back(make_signal("elbow_flexion", data::Quantity::joint_angle, "rad", 1000.0 / 3.0, -1.5, 7));
+  test.signals.push_back(
+      make_signal("elbow_flexion", data::Quantity::joint_angle, "rad", 1000.0 / 3.0, -1.5, 7));
   session.trials.push_back(std::move(test));
   return session;
 }

@@ -23,7 +23,8 @@ Signal sampled(double rate_hz, double start_s, std::size_t count, const std::fun
 }
 
 /// Largest distance from f, leaving out what leans on the continuation beyond the ends.
-double largest_error(const Signal& out, const std::function<double(double)>& f, double margin_s, double first_s, double last_s) {
+double largest_error(const Signal& out, const std::function<double(double)>& f, double margin_s,
+                     double first_s, double last_s) {
   double worst = 0.0;
   for (std::size_t i = 0; i < out.samples.size(); ++i) {
     const double t = out.info.time_s(i);
@@ -37,14 +38,18 @@ double sine_error(double from_hz, double to_hz, double frequency_hz, double offs
   const auto f = [=](double t) { return std::sin(two_pi * frequency_hz * t + 0.3); };
   const Signal in = sampled(from_hz, 0.013, static_cast<std::size_t>(4.0 * from_hz), f);
   const TimeGrid grid{to_hz, 0.013 + offset_s, static_cast<std::size_t>(3.9 * to_hz)};
-  return largest_error(resample(in, grid), f, design_resampling(from_hz, to_hz).half_width_s, in.info.start_time_s, in.info.end_time_s());
+  return largest_error(resample(in, grid), f, design_resampling(from_hz, to_hz).half_width_s,
+                       in.info.start_time_s, in.info.end_time_s());
 }
 
 TEST(Resample, SinesInThePassbandAreReproduced) {
-  for (const auto& [from, to] : {std::pair{2000.0, 200.0}, {200.0, 2000.0}, {2000.0, 600.0}, {148.148, 200.0}, {1000.0, 999.0}}) {
+  for (const auto& [from, to] :
+       {std::pair{2000.0, 200.0}, {200.0, 2000.0}, {2000.0, 600.0}, {148.148, 200.0}, {1000.0, 999.0}}) {
     const double passband = 0.9 * 0.5 * std::min(from, to);
     for (const double part : {0.05, 0.5, 1.0}) {
-      for (const double offset : {0.0, 0.00031, 0.0017}) EXPECT_LT(sine_error(from, to, part * passband, offset), 2e-5) << from << " -> " << to << " at " << part;
+      for (const double offset : {0.0, 0.00031, 0.0017})
+        EXPECT_LT(sine_error(from, to, part * passband, offset), 2e-5)
+            << from << " -> " << to << " at " << part;
     }
   }
 }
@@ -54,7 +59,10 @@ TEST(Resample, SinesAboveTheNewNyquistFrequencyAreSuppressed) {
     const auto f = [=](double t) { return std::sin(two_pi * frequency * t + 0.3); };
     const Signal in = sampled(2000.0, 0.0, 8000, f);
     const Signal out = resample(in, {200.0, 0.0, 790});
-    EXPECT_LT(largest_error(out, [](double) { return 0.0; }, design_resampling(2000.0, 200.0).half_width_s, 0.0, 3.9995), 2e-5)
+    EXPECT_LT(
+        largest_error(
+            out, [](double) { return 0.0; }, design_resampling(2000.0, 200.0).half_width_s, 0.0, 3.9995),
+        2e-5)
         << frequency;  // -94 dB; 60 dB are promised
   }
 }
@@ -73,12 +81,16 @@ TEST(Resample, AgreesWithScipysPolyphaseEngine) {
   Signal in = sampled(2000.0, 0.0, 4000, [](double) { return 0.0; });
   for (std::size_t i = 0; i < in.samples.size(); ++i) {
     const auto t = static_cast<double>(i);
-    in.samples[i] = std::sin(0.05 * t) + 0.5 * std::cos(0.31 * t + 0.2) + 0.1 * (static_cast<double>((i * 7919) % 101) - 50.0) / 50.0;
+    in.samples[i] = std::sin(0.05 * t) + 0.5 * std::cos(0.31 * t + 0.2) +
+                    0.1 * (static_cast<double>((i * 7919) % 101) - 50.0) / 50.0;
   }
   const Signal out = resample(in, {600.0, 0.0, 1200});
   // tests/data/io/resample_scipy.py, scipy 1.10
-  const std::pair<std::size_t, double> wanted[] = {{400, -0.4349866758113596}, {401, -0.24981041863556297}, {577, 1.376819808071006},
-                                                   {700, -0.13514924544652968}, {801, 1.0344255635977857}};
+  const std::pair<std::size_t, double> wanted[] = {{400, -0.4349866758113596},
+                                                   {401, -0.24981041863556297},
+                                                   {577, 1.376819808071006},
+                                                   {700, -0.13514924544652968},
+                                                   {801, 1.0344255635977857}};
   for (const auto& [i, value] : wanted) EXPECT_NEAR(out.samples[i], value, 1e-12) << i;
   const ResampleFilter filter = design_resampling(2000.0, 600.0);
   EXPECT_NEAR(filter.beta, 10.06126, 1e-12);
@@ -103,7 +115,8 @@ TEST(Resample, TheSameGridCopiesAndSaysNothing) {
 TEST(Resample, IsRecordedInTheSignalsAttributes) {
   const Signal in = sampled(2000.0, 0.0, 2000, [](double t) { return t; });
   EXPECT_EQ(resample(in, {200.0, 0.0, 100}).info.attributes.at("resampled"),
-            "from 2000 Hz to 200 Hz by a Kaiser-windowed sinc (gain 1 up to 90 Hz, -100 dB from 100 Hz, beta 10.06, 0.3206 s to each "
+            "from 2000 Hz to 200 Hz by a Kaiser-windowed sinc (gain 1 up to 90 Hz, -100 dB from 100 Hz, beta "
+            "10.06, 0.3206 s to each "
             "side); point reflection at both ends");
 }
 
@@ -116,7 +129,8 @@ TEST(Resample, AlignTakesTheCommonWindowOnOwnTimeStamps) {
   ASSERT_EQ(out[0].samples.size(), out[1].samples.size());
   EXPECT_LE(out[0].info.end_time_s(), signals[1].info.end_time_s() + 1e-9);
   EXPECT_GT(out[0].info.end_time_s(), signals[1].info.end_time_s() - 0.002);
-  for (std::size_t i = 300; i + 300 < out[0].samples.size(); ++i) ASSERT_NEAR(out[0].samples[i], out[1].samples[i], 1e-4);
+  for (std::size_t i = 300; i + 300 < out[0].samples.size(); ++i)
+    ASSERT_NEAR(out[0].samples[i], out[1].samples[i], 1e-4);
 }
 
 TEST(Resample, CubicEvaluationIsExactForCubics) {
@@ -129,26 +143,47 @@ TEST(Resample, CubicEvaluationIsExactForCubics) {
 
 TEST(Resample, MistakesAreNamed) {
   const Signal in = sampled(200.0, 1.0, 100, [](double t) { return t; });
-  EXPECT_EQ(error_of([&] { resample(in, {100.0, 0.5, 10}); }),
-            "error[outside-signal]: signal `x` lasts from 1 s to 1.495 s; samples from 0.5 s to 0.59 s are wanted\n"
-            "  help: use the common time span of the signals\n");
-  EXPECT_EQ(error_of([&] { resample(in, {0.0, 1.0, 10}); }), "error[bad-rate]: a rate must be greater than 0, not 0 Hz\n");
-  EXPECT_THAT(error_of([&] { resample(in, {std::numeric_limits<double>::quiet_NaN(), 1.0, 10}); }), HasSubstr("bad-rate"));
-  EXPECT_EQ(error_of([&] { design_resampling(1.0, 1.0, {.passband = 1.0}); }), "error[bad-option]: `passband` must lie in (0, 1), not be 1\n");
-  EXPECT_EQ(error_of([&] { evaluate_at(in, std::vector<double>{1.6}); }),
-            "error[outside-signal]: signal `x` lasts from 1 s to 1.495 s; samples from 1.6 s to 1.6 s are wanted\n"
-            "  help: use the common time span of the signals\n");
+  EXPECT_EQ(
+      error_of([&] {
+        resample(in, {100.0, 0.5, 10});
+      }),
+      "error[outside-signal]: signal `x` lasts from 1 s to 1.495 s; samples from 0.5 s to 0.59 s are wanted\n"
+      "  help: use the common time span of the signals\n");
+  EXPECT_EQ(error_of([&] {
+              resample(in, {0.0, 1.0, 10});
+            }),
+            "error[bad-rate]: a rate must be greater than 0, not 0 Hz\n");
+  EXPECT_THAT(error_of([&] {
+                resample(in, {std::numeric_limits<double>::quiet_NaN(), 1.0, 10});
+              }),
+              HasSubstr("bad-rate"));
+  EXPECT_EQ(error_of([&] { design_resampling(1.0, 1.0, {.passband = 1.0}); }),
+            "error[bad-option]: `passband` must lie in (0, 1), not be 1\n");
+  EXPECT_EQ(
+      error_of([&] { evaluate_at(in, std::vector<double>{1.6}); }),
+      "error[outside-signal]: signal `x` lasts from 1 s to 1.495 s; samples from 1.6 s to 1.6 s are wanted\n"
+      "  help: use the common time span of the signals\n");
   Signal late = in;
   late.info.name = "late";
   late.info.start_time_s = 5.0;
-  EXPECT_EQ(error_of([&] { align(std::vector<Signal>{in, late}, 100.0); }),
-            "error[no-common-window]: signals `x` and `late` do not overlap in time: one ends at 1.495 s, the other begins at 5 s\n"
-            "  help: check the start times; `time_offset_s` of a session description moves a recorder's clock\n");
+  EXPECT_EQ(
+      error_of([&] {
+        align(std::vector<Signal>{in, late}, 100.0);
+      }),
+      "error[no-common-window]: signals `x` and `late` do not overlap in time: one ends at 1.495 s, the "
+      "other begins at 5 s\n"
+      "  help: check the start times; `time_offset_s` of a session description moves a recorder's clock\n");
   Signal broken = in;
   broken.samples[3] = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(error_of([&] { resample(broken, {100.0, 1.0, 10}); }), "error[non-finite-sample]: signal `x` has inf at 1.015 s\n");
+  EXPECT_EQ(error_of([&] {
+              resample(broken, {100.0, 1.0, 10});
+            }),
+            "error[non-finite-sample]: signal `x` has inf at 1.015 s\n");
   broken.samples.resize(1);
-  EXPECT_THAT(error_of([&] { resample(broken, {100.0, 1.0, 1}); }), HasSubstr("[too-short]: signal `x` has 1 samples, at least 2 are needed"));
+  EXPECT_THAT(error_of([&] {
+                resample(broken, {100.0, 1.0, 1});
+              }),
+              HasSubstr("[too-short]: signal `x` has 1 samples, at least 2 are needed"));
 }
 
 }  // namespace

@@ -56,10 +56,12 @@ TEST(SessionFile, ReadsAnyPieceOfASignal) {
   data::store(session, writer);
   writer.commit();
   const SessionFile source(file);
-  for (const auto& [first, count] : {std::pair<std::size_t, std::size_t>{0, 1}, {250, 20}, {4999, 1}, {1000, 3000}}) {
+  for (const auto& [first, count] :
+       {std::pair<std::size_t, std::size_t>{0, 1}, {250, 20}, {4999, 1}, {1000, 3000}}) {
     std::vector<double> piece(count);
     source.read(0, 0, first, piece);
-    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(piece[i], session.trials[0].signals[0].samples[first + i]);
+    for (std::size_t i = 0; i < count; ++i)
+      ASSERT_EQ(piece[i], session.trials[0].signals[0].samples[first + i]);
   }
   std::vector<double> piece(2);
   EXPECT_THROW(source.read(0, 0, 4999, piece), std::out_of_range);
@@ -84,7 +86,8 @@ TEST(SessionFile, ChunksMayBeWrittenInAnyOrder) {
 TEST(SessionFile, OpensInH5pyAndXarrayAsItIs) {
   const auto file = scratch_dir() / "s.h5";
   write_session(small_session(), file);
-  const std::string command = "/usr/bin/python3 " + (tests::source_dir() / "tests/data/io/read_session.py").string() + " " +
+  const std::string command = "/usr/bin/python3 " +
+                              (tests::source_dir() / "tests/data/io/read_session.py").string() + " " +
                               file.string() + " > " + file.string() + ".log 2>&1";
   const int status = std::system(command.c_str());
   if (WEXITSTATUS(status) == 77 || WEXITSTATUS(status) == 127) {
@@ -164,8 +167,8 @@ bool in_child(const std::function<bool()>& action) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-// The limit on a file's size stands for a full disk: writes fail in the same places. The process must end in peace,
-// wherever the disk was full.
+// The limit on a file's size stands for a full disk: writes fail in the same places. The process must end in
+// peace, wherever the disk was full.
 TEST(SessionFileWriter, AFullDiskIsNamedAndLeavesNothing) {
   const auto dir = scratch_dir();
   for (const rlim_t bytes : {500u, 3000u, 50'000u, 200'000u, 1'000'000u, 2'402'000u}) {
@@ -189,13 +192,15 @@ TEST(SessionFileWriter, AFullDiskIsNamedAndLeavesNothing) {
           writer->commit();
         } catch (const InputError& error) {
           named = error.diagnostics().front().code == "write-failed" &&
-                  std::string(error.what()).find((dir / "s.h5").string() + "`: File too large") != std::string::npos;
+                  std::string(error.what()).find((dir / "s.h5").string() + "`: File too large") !=
+                      std::string::npos;
           if (!named) std::fprintf(stderr, "%s\n", error.what());
         }
         ::setrlimit(RLIMIT_FSIZE, &limit);  // a full disk does not keep memory from growing, this limit does
         writer.reset();
         return named;
-      })) << bytes << " bytes, deflate " << level;
+      })) << bytes
+          << " bytes, deflate " << level;
       EXPECT_EQ(files_in(dir), 0u) << bytes;
     }
   }
@@ -204,36 +209,48 @@ TEST(SessionFileWriter, AFullDiskIsNamedAndLeavesNothing) {
 TEST(SessionFileWriter, AReadOnlyOrMissingFolderIsNamed) {
   const auto dir = scratch_dir();
   EXPECT_EQ(error_of([&] { SessionFileWriter writer(dir / "no" / "s.h5"); }, dir),
-            "error[missing-folder]: cannot write `no/s.h5`: there is no folder `no`\n  help: make the folder first\n");
+            "error[missing-folder]: cannot write `no/s.h5`: there is no folder `no`\n  help: make the folder "
+            "first\n");
   std::filesystem::create_directory(dir / "locked");
-  std::filesystem::permissions(dir / "locked", std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec |
-                                                   std::filesystem::perms::others_read | std::filesystem::perms::others_exec);
+  std::filesystem::permissions(dir / "locked",
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec |
+                                   std::filesystem::perms::others_read | std::filesystem::perms::others_exec);
   EXPECT_TRUE(in_child([&] {
     if (::geteuid() == 0 && ::seteuid(65534) != 0) return false;  // root may write anywhere
     const std::string text = error_of([&] { SessionFileWriter writer(dir / "locked" / "s.h5"); }, dir);
     std::fprintf(stderr, "%s", text.c_str());
-    return text == "error[read-only-folder]: cannot write `locked/s.h5`: Permission denied\n"
-                   "  help: choose a folder you may write to\n";
+    return text ==
+           "error[read-only-folder]: cannot write `locked/s.h5`: Permission denied\n"
+           "  help: choose a folder you may write to\n";
   }));
 }
 
 TEST(SessionFileWriter, RefusesNamesThatHdf5CannotHold) {
   SessionFileWriter writer(scratch_dir() / "s.h5");
-  EXPECT_EQ(error_of([&] { writer.begin_trial({"a/b", {}, {}, {}, {}}); }),
+  EXPECT_EQ(error_of([&] {
+              writer.begin_trial({"a/b", {}, {}, {}, {}});
+            }),
             "error[bad-name]: `a/b` cannot be the name of a trial\n"
             "  help: a name must not be empty and must not hold `/` or control characters\n");
   writer.begin_trial({"t", {}, {}, {}, {}});
-  EXPECT_THAT(error_of([&] { writer.write("t", make_signal("", data::Quantity::emg, "V", 1.0, 0.0, 1)); }), HasSubstr("[bad-name]"));
-  EXPECT_EQ(error_of([&] { writer.write("t", make_signal("time_0", data::Quantity::emg, "V", 1.0, 0.0, 1)); }),
-            "error[bad-name]: `time_0` cannot be the name of a signal\n  help: names time_<number> are kept for time stamps\n");
-  EXPECT_EQ(error_of([&] { writer.begin_trial({"t", {}, {}, {}, {}}); }),
+  EXPECT_THAT(error_of([&] { writer.write("t", make_signal("", data::Quantity::emg, "V", 1.0, 0.0, 1)); }),
+              HasSubstr("[bad-name]"));
+  EXPECT_EQ(
+      error_of([&] { writer.write("t", make_signal("time_0", data::Quantity::emg, "V", 1.0, 0.0, 1)); }),
+      "error[bad-name]: `time_0` cannot be the name of a signal\n  help: names time_<number> are kept for "
+      "time stamps\n");
+  EXPECT_EQ(error_of([&] {
+              writer.begin_trial({"t", {}, {}, {}, {}});
+            }),
             "error[duplicate-trial]: there are two trials `t`\n  help: give each trial a name of its own\n");
   writer.write("t", make_signal("s", data::Quantity::emg, "V", 1.0, 0.0, 1));
   EXPECT_EQ(error_of([&] { writer.write("t", make_signal("s", data::Quantity::emg, "V", 1.0, 0.0, 1)); }),
-            "error[duplicate-signal]: trial `t` has two signals `s`\n  help: give each signal of a trial a name of its own\n");
-  EXPECT_EQ(error_of([&] { writer.write("t", make_signal("r", data::Quantity::emg, "V", 0.0, 0.0, 1)); }),
-            "error[bad-signal]: signal `r` of trial `t` needs a rate above 0, a start time, a unit and samples "
-            "(rate 0 Hz, start 0 s, unit `V`, 1 samples)\n");
+            "error[duplicate-signal]: trial `t` has two signals `s`\n  help: give each signal of a trial a "
+            "name of its own\n");
+  EXPECT_EQ(
+      error_of([&] { writer.write("t", make_signal("r", data::Quantity::emg, "V", 0.0, 0.0, 1)); }),
+      "error[bad-signal]: signal `r` of trial `t` needs a rate above 0, a start time, a unit and samples "
+      "(rate 0 Hz, start 0 s, unit `V`, 1 samples)\n");
 }
 
 TEST(SessionFileWriter, RefusesNonFiniteSamplesAndUnfinishedSignals) {
@@ -241,15 +258,18 @@ TEST(SessionFileWriter, RefusesNonFiniteSamplesAndUnfinishedSignals) {
   writer.begin_trial({"t", {}, {}, {}, {}});
   data::Signal signal = make_signal("s", data::Quantity::emg, "V", 10.0, 1.0, 5);
   signal.samples[3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(error_of([&] { writer.write("t", signal); }), "error[non-finite-sample]: signal `s` of trial `t` has nan at 1.3 s\n");
+  EXPECT_EQ(error_of([&] { writer.write("t", signal); }),
+            "error[non-finite-sample]: signal `s` of trial `t` has nan at 1.3 s\n");
   EXPECT_THROW(writer.commit(), std::logic_error);
 }
 
 TEST(SessionFile, BadFilesAreNamedWithWhatToDo) {
   const auto dir = scratch_dir();
-  EXPECT_EQ(error_of([&] { SessionFile f(dir / "none.h5"); }, dir), "error[missing-file]: cannot read `none.h5`\n  help: check the path\n");
+  EXPECT_EQ(error_of([&] { SessionFile f(dir / "none.h5"); }, dir),
+            "error[missing-file]: cannot read `none.h5`\n  help: check the path\n");
   tests::write_file(dir / "empty.h5", "");
-  EXPECT_EQ(error_of([&] { SessionFile f(dir / "empty.h5"); }, dir), "error[empty-file]: `empty.h5` is empty\n  help: make it again\n");
+  EXPECT_EQ(error_of([&] { SessionFile f(dir / "empty.h5"); }, dir),
+            "error[empty-file]: `empty.h5` is empty\n  help: make it again\n");
   tests::write_file(dir / "text.h5", "time,value\n");
   EXPECT_EQ(error_of([&] { SessionFile f(dir / "text.h5"); }, dir),
             "error[not-hdf5]: `text.h5` is not an HDF5 file\n"
@@ -276,12 +296,16 @@ TEST(SessionFile, MissingOrForeignContentIsNamed) {
   const auto remove = [](const char* object, const char* attribute) {
     return [=](hid_t file) { H5Adelete_by_name(file, object, attribute, H5P_DEFAULT); };
   };
-  const std::string help = "  help: the layout is described in data/io/README.md; import the recordings again\n";
+  const std::string help =
+      "  help: the layout is described in data/io/README.md; import the recordings again\n";
   EXPECT_EQ(error_after(dir, remove("/", "format")),
-            "error[wrong-format]: `s.h5`: this HDF5 file is not a Brachium session (no attribute `format` = `brachium-session`)\n"
+            "error[wrong-format]: `s.h5`: this HDF5 file is not a Brachium session (no attribute `format` = "
+            "`brachium-session`)\n"
             "  help: import the recordings with a session description (.toml) first\n");
   EXPECT_EQ(error_after(dir, remove("/trials/mvc-1/elbow_flexion", "rate_hz")),
-            "error[missing-attribute]: `s.h5`: signal `elbow_flexion` of trial `mvc-1` has no attribute `rate_hz`\n" + help);
+            "error[missing-attribute]: `s.h5`: signal `elbow_flexion` of trial `mvc-1` has no attribute "
+            "`rate_hz`\n" +
+                help);
   EXPECT_EQ(error_after(dir, remove("/trials/mvc-1", "kind")),
             "error[missing-attribute]: `s.h5`: trial `mvc-1` has no attribute `kind`\n" + help);
   EXPECT_EQ(error_after(dir, [](hid_t file) { H5Ldelete(file, "trials", H5P_DEFAULT); }),
@@ -323,7 +347,8 @@ TEST(SessionFile, DamagedSamplesAreFoundByTheirChecksum) {
   bytes[at + 100] = static_cast<char>(bytes[at + 100] ^ 0x10);
   tests::write_file(dir / "s.h5", bytes);
   EXPECT_EQ(error_of([&] { read_session(dir / "s.h5"); }, dir),
-            "error[damaged-data]: `s.h5`: samples of signal `z_last_by_name` of trial `mvc-1` cannot be read; the file is cut "
+            "error[damaged-data]: `s.h5`: samples of signal `z_last_by_name` of trial `mvc-1` cannot be "
+            "read; the file is cut "
             "off or damaged\n  help: make the file again, or fetch a complete copy\n");
 }
 

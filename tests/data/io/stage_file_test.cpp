@@ -97,10 +97,13 @@ StageFileContent small_content() {
   table.columns.push_back({"verdict", "", std::vector<std::string>{"identified", "AT UPPER BOUND \xC3\xA4"}});
   table.columns.push_back({"fitted", "m", std::vector<double>{0.1, std::numeric_limits<double>::infinity()}});
   content.tables["fit"] = table;
-  content.tables["empty"] = {"no rows", {{"a", "1", std::vector<double>{}}, {"b", "", std::vector<std::string>{}}}};
+  content.tables["empty"] = {"no rows",
+                             {{"a", "1", std::vector<double>{}}, {"b", "", std::vector<std::string>{}}}};
   content.attributes = {{"method", "high-pass 30 Hz"}, {"empty", ""}};
-  content.diagnostics.push_back({data::Severity::warning, "clipping", "channel `x` clips", std::nullopt, "lower the gain"});
-  content.diagnostics.push_back({data::Severity::note, "n", "m", data::SourceSpan{"f.toml", 3, 4, 5, "text"}, ""});
+  content.diagnostics.push_back(
+      {data::Severity::warning, "clipping", "channel `x` clips", std::nullopt, "lower the gain"});
+  content.diagnostics.push_back(
+      {data::Severity::note, "n", "m", data::SourceSpan{"f.toml", 3, 4, 5, "text"}, ""});
   content.subject = small_subject();
   content.fingerprint = {{"options", "abc"}, {"program", "0.1.0"}};
   return content;
@@ -118,28 +121,37 @@ TEST(SubjectFile, AnInfiniteStandardErrorIsTheTextNotIdentified) {
 
 TEST(SubjectFile, EveryMistakeIsReportedAtOnceWithItsPlace) {
   const std::string text =
-      "format = \"brachium-subject\"\nformat_version = 1\nname = \"s\"\nweight = 3\n\n[[muscle]]\nname = \"B\"\n"
+      "format = \"brachium-subject\"\nformat_version = 1\nname = \"s\"\nweight = 3\n\n[[muscle]]\nname = "
+      "\"B\"\n"
       "max_isometric_force_N = -1.0\noptimal_fibre_lenght_m = 0.1\ntendon_slack_length_m = 0.1\n"
-      "pennation_at_optimal_rad = 1.6\nmax_contraction_velocity_per_s = 10\nfibre_damping_norm = 0.1\nstrength = \"big\"\n\n"
-      "[muscle.activation]\ndelay_s = 0.04\ntime_constant_1_s = 0.01\ntime_constant_2_s = 0.03\nshape = -1.0\n\n"
+      "pennation_at_optimal_rad = 1.6\nmax_contraction_velocity_per_s = 10\nfibre_damping_norm = "
+      "0.1\nstrength = \"big\"\n\n"
+      "[muscle.activation]\ndelay_s = 0.04\ntime_constant_1_s = 0.01\ntime_constant_2_s = 0.03\nshape = "
+      "-1.0\n\n"
       "[[muscle]]\nname = \"B\"\n";
-  EXPECT_EQ(error_of([&] { parse_subject(text.substr(0, text.rfind("\n[[muscle]]")), "s.toml"); }),
-            "error[out-of-range]: `max_isometric_force_N` must lie in (0, inf), not be -1\n"
-            "  --> s.toml:8:25\n  |\n8 | max_isometric_force_N = -1.0\n  |                         ^^^^\n"
-            "error[missing-key]: `optimal_fibre_length_m` is missing in [[muscle]]\n"
-            "  --> s.toml:6:1\n  |\n6 | [[muscle]]\n  | ^^^^^^^^^^\n"
-            "error[out-of-range]: `pennation_at_optimal_rad` must lie in [0, 1.5707963267948966), not be 1.6\n"
-            "  --> s.toml:11:28\n   |\n11 | pennation_at_optimal_rad = 1.6\n   |                            ^^^\n"
-            "error[wrong-type]: `strength` of [[muscle]] must be a number, not a text\n"
-            "  --> s.toml:14:12\n   |\n14 | strength = \"big\"\n   |            ^^^^^\n"
-            "error[unknown-key]: `optimal_fibre_lenght_m` is not a key of [[muscle]]\n"
-            "  --> s.toml:9:1\n  |\n9 | optimal_fibre_lenght_m = 0.1\n  | ^^^^^^^^^^^^^^^^^^^^^^ did you mean `optimal_fibre_length_m`?\n"
-            "error[unknown-key]: `weight` is not a key of this file\n"
-            "  --> s.toml:4:1\n  |\n4 | weight = 3\n  | ^^^^^^ known: channel_gains, format, format_version, model, muscle, "
-            "name, provenance, statistics, verdict\n");
-  EXPECT_THAT(error_of([&] { parse_subject(text, "s.toml"); }), HasSubstr("error[duplicate-muscle]: there are two muscles `B`"));
-  EXPECT_THAT(error_of([&] { parse_subject("name = \"s\"\n", "s.toml"); }),
-              HasSubstr("error[wrong-format]: `s.toml` is not a calibrated subject (no `format = \"brachium-subject\"`)"));
+  EXPECT_EQ(
+      error_of([&] { parse_subject(text.substr(0, text.rfind("\n[[muscle]]")), "s.toml"); }),
+      "error[out-of-range]: `max_isometric_force_N` must lie in (0, inf), not be -1\n"
+      "  --> s.toml:8:25\n  |\n8 | max_isometric_force_N = -1.0\n  |                         ^^^^\n"
+      "error[missing-key]: `optimal_fibre_length_m` is missing in [[muscle]]\n"
+      "  --> s.toml:6:1\n  |\n6 | [[muscle]]\n  | ^^^^^^^^^^\n"
+      "error[out-of-range]: `pennation_at_optimal_rad` must lie in [0, 1.5707963267948966), not be 1.6\n"
+      "  --> s.toml:11:28\n   |\n11 | pennation_at_optimal_rad = 1.6\n   |                            ^^^\n"
+      "error[wrong-type]: `strength` of [[muscle]] must be a number, not a text\n"
+      "  --> s.toml:14:12\n   |\n14 | strength = \"big\"\n   |            ^^^^^\n"
+      "error[unknown-key]: `optimal_fibre_lenght_m` is not a key of [[muscle]]\n"
+      "  --> s.toml:9:1\n  |\n9 | optimal_fibre_lenght_m = 0.1\n  | ^^^^^^^^^^^^^^^^^^^^^^ did you mean "
+      "`optimal_fibre_length_m`?\n"
+      "error[unknown-key]: `weight` is not a key of this file\n"
+      "  --> s.toml:4:1\n  |\n4 | weight = 3\n  | ^^^^^^ known: channel_gains, format, format_version, "
+      "model, muscle, "
+      "name, provenance, statistics, verdict\n");
+  EXPECT_THAT(error_of([&] { parse_subject(text, "s.toml"); }),
+              HasSubstr("error[duplicate-muscle]: there are two muscles `B`"));
+  EXPECT_THAT(
+      error_of([&] { parse_subject("name = \"s\"\n", "s.toml"); }),
+      HasSubstr(
+          "error[wrong-format]: `s.toml` is not a calibrated subject (no `format = \"brachium-subject\"`)"));
 }
 
 TEST(StageFile, RoundTripIsExact) {
@@ -177,7 +189,8 @@ TEST(StageFile, TablesOpenInXarray) {
     data::store(small_session(), writer);
     writer.finish(small_content());
   }
-  const std::string command = "/usr/bin/python3 " + (tests::source_dir() / "tests/data/io/read_session.py").string() + " " +
+  const std::string command = "/usr/bin/python3 " +
+                              (tests::source_dir() / "tests/data/io/read_session.py").string() + " " +
                               file.string() + " tables > " + file.string() + ".log 2>&1";
   const int status = std::system(command.c_str());
   if (WEXITSTATUS(status) == 77 || WEXITSTATUS(status) == 127) {
