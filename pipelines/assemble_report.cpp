@@ -22,6 +22,10 @@ Tone parse_tone(const std::string& text) {
   return Tone::plain;
 }
 
+std::string sentence(const std::string& text) {
+  return text.ends_with('.') ? text : text + ".";
+}
+
 /// The last stage that states a verdict.
 const StageData* verdict_stage(const RunResult& result, const RunData& data) {
   for (auto record = result.stages.rbegin(); record != result.stages.rend(); ++record) {
@@ -54,15 +58,17 @@ void add_findings(const RunResult& result, const RunData& data, report::Document
   for (const Diagnostic& d : result.errors) document.findings.push_back(report::make_finding(d));
   for (const ExpectationResult& r : result.expectations) {
     if (!r.checked || r.passed) continue;
-    document.findings.push_back({fmt::format("Expected `{}` to be {}, found {}.", place_text(*r.expectation), wanted_text(*r.expectation),
-                                             r.found ? fmt::format("{:.6g}", *r.found) : r.remark),
-                                 Tone::bad});
+    document.findings.push_back(
+        {fmt::format("Expected `{}` to be {}, found {}.", place_text(*r.expectation),
+                     wanted_text(*r.expectation), r.found ? fmt::format("{:.6g}", *r.found) : r.remark),
+         Tone::bad});
   }
-  for (const Diagnostic& d : result.definition->warnings) document.findings.push_back(report::make_finding(d));
+  for (const Diagnostic& d : result.definition->warnings)
+    document.findings.push_back(report::make_finding(d));
   for (const StageRecord& record : result.stages) {
     const auto found = data.find(record.name);
     if (found == data.end()) continue;
-    for (Diagnostic d : found->second.diagnostics) {
+    for (Diagnostic d : found->second.diagnostics) {  // a copy: the stage's name is added
       d.message = fmt::format("`{}`: {}", record.name, d.message);
       document.findings.push_back(report::make_finding(d));
     }
@@ -92,18 +98,21 @@ void plain_chapter(const StageData& output, report::Section& section) {
     section.blocks.emplace_back(std::move(grid));
   }
   report::Grid texts;
-  for (const auto& [key, text] : output.attributes) texts.rows.push_back({report::make_text_cell(key), report::make_text_cell(text)});
+  for (const auto& [key, text] : output.attributes)
+    texts.rows.push_back({report::make_text_cell(key), report::make_text_cell(text)});
   if (!texts.rows.empty()) {
     texts.header = {"what", "value"};
     section.blocks.emplace_back(std::move(texts));
   }
 }
 
-report::Section stage_section(const StageRecord& record, const StageDefinition& stage, const ReportContext& context) {
+report::Section stage_section(const StageRecord& record, const StageDefinition& stage,
+                              const ReportContext& context) {
   report::Section section;
   section.title = stage.name;
   section.anchor = "stage-" + stage.name;
-  section.blocks.emplace_back(report::Paragraph{fmt::format("`{}`: {}.", record.run, stage.spec->summary), Tone::plain});
+  section.blocks.emplace_back(
+      report::Paragraph{fmt::format("`{}`: {}", record.run, sentence(stage.spec->summary)), Tone::plain});
   try {
     if (stage.spec->report) {
       stage.spec->report(context, section);
@@ -112,7 +121,8 @@ report::Section stage_section(const StageRecord& record, const StageDefinition& 
     }
   } catch (const std::exception& failure) {
     // The results stand; only their picture is missing, and that is said where it would be.
-    section.blocks.emplace_back(report::Paragraph{fmt::format("This chapter could not be drawn: {}", failure.what()), Tone::bad});
+    section.blocks.emplace_back(
+        report::Paragraph{fmt::format("This chapter could not be drawn: {}", failure.what()), Tone::bad});
   }
   return section;
 }
@@ -122,7 +132,8 @@ void add_methods(const StageDefinition& stage, const ReportContext& context, rep
   try {
     document.methods.push_back(stage.spec->methods(context));
   } catch (const std::exception& failure) {
-    document.methods.push_back(fmt::format("The methods of stage `{}` could not be written: {}", stage.name, failure.what()));
+    document.methods.push_back(
+        fmt::format("The methods of stage `{}` could not be written: {}", stage.name, failure.what()));
   }
 }
 
@@ -133,9 +144,14 @@ report::Section expectation_section(const RunResult& result) {
   grid.header = {"number", "wanted", "found", "verdict"};
   for (const ExpectationResult& r : result.expectations) {
     const Tone tone = !r.checked ? Tone::plain : r.passed ? Tone::good : Tone::bad;
-    grid.rows.push_back({report::make_text_cell(place_text(*r.expectation)), report::make_text_cell(wanted_text(*r.expectation)),
+    grid.rows.push_back({report::make_text_cell(place_text(*r.expectation)),
+                         report::make_text_cell(wanted_text(*r.expectation)),
                          report::make_text_cell(r.found ? fmt::format("{:.6g}", *r.found) : "-"),
-                         report::make_text_cell(!r.checked ? "not checked: " + r.remark : r.passed ? "ok" : r.remark.empty() ? "missed" : r.remark, tone)});
+                         report::make_text_cell(!r.checked         ? "not checked: " + r.remark
+                                                : r.passed         ? "ok"
+                                                : r.remark.empty() ? "missed"
+                                                                   : r.remark,
+                                                tone)});
   }
   section.blocks.emplace_back(std::move(grid));
   return section;
@@ -143,19 +159,24 @@ report::Section expectation_section(const RunResult& result) {
 
 void add_provenance(const RunResult& result, report::Document& document) {
   const Definition& definition = *result.definition;
-  const auto add = [&](const std::string& label, const std::string& value) { document.provenance.emplace_back(label, value); };
+  const auto add = [&](const std::string& label, const std::string& value) {
+    document.provenance.emplace_back(label, value);
+  };
   add("program", "Brachium " + program_version());
   for (const auto& [name, version] : build_versions()) add(name, version);
   add("cores", std::to_string(std::thread::hardware_concurrency()));
   add("definition", definition.file.string());
   if (!definition.settings.empty()) add("settings", fmt::format("{}", fmt::join(definition.settings, "; ")));
-  if (!result.command_line.empty()) add("command line", fmt::format("{}", fmt::join(result.command_line, " ")));
+  if (!result.command_line.empty())
+    add("command line", fmt::format("{}", fmt::join(result.command_line, " ")));
   add("run folder", result.folder.string());
   add("started", result.started);
   add("ended", result.ended);
-  for (const auto& [file, digest] : result.files) add("SHA-256 of " + std::filesystem::path(file).filename().string(), digest);
+  for (const auto& [file, digest] : result.files)
+    add("SHA-256 of " + std::filesystem::path(file).filename().string(), digest);
   for (const StageRecord& s : result.stages) {
-    add("stage " + s.name, fmt::format("{}: {}{}{}", to_string(s.status), s.reason, s.seconds > 0.0 ? fmt::format("; {:.2f} s", s.seconds) : "",
+    add("stage " + s.name, fmt::format("{}: {}{}{}", to_string(s.status), s.reason,
+                                       s.seconds > 0.0 ? fmt::format("; {:.2f} s", s.seconds) : "",
                                        s.started.empty() ? "" : "; computed " + s.started));
   }
 }
@@ -165,8 +186,9 @@ void add_provenance(const RunResult& result, report::Document& document) {
 std::string verdict_of(const RunResult& result, const RunData& data) {
   if (!result.failed_stage.empty()) {
     const std::string why = result.errors.empty() ? "" : ": " + result.errors.front().message;
-    return result.outcome == Outcome::interrupted ? fmt::format("Stopped in stage `{}`", result.failed_stage)
-                                                  : fmt::format("Stage `{}` failed{}", result.failed_stage, why);
+    return result.outcome == Outcome::interrupted
+               ? fmt::format("Stopped in stage `{}`", result.failed_stage)
+               : fmt::format("Stage `{}` failed{}", result.failed_stage, why);
   }
   const StageData* stage = verdict_stage(result, data);
   return stage ? stage->attributes.at("verdict") : "";
@@ -180,17 +202,20 @@ report::Document assemble_report(const RunResult& result, const RunData& data) {
   document.verdict = verdict_of(result, data);
   if (!result.failed_stage.empty()) {
     document.verdict_tone = Tone::bad;
-  } else if (const StageData* stage = verdict_stage(result, data); stage && stage->attributes.contains("verdict_tone")) {
+  } else if (const StageData* stage = verdict_stage(result, data);
+             stage && stage->attributes.contains("verdict_tone")) {
     document.verdict_tone = parse_tone(stage->attributes.at("verdict_tone"));
   }
   if (const std::size_t count = missed(result); count > 0) {
-    document.verdict += fmt::format("{}{} of {} expected numbers missed", document.verdict.empty() ? "" : " · ", count, result.expectations.size());
+    document.verdict += fmt::format("{}{} of {} expected numbers missed",
+                                    document.verdict.empty() ? "" : " · ", count, result.expectations.size());
     document.verdict_tone = Tone::bad;
   }
   if (document.verdict.empty()) document.verdict = fmt::format("{} stages done", result.stages.size());
   add_findings(result, data, document);
   for (const StageRecord& record : result.stages) {
-    document.chain.push_back({record.name, record.run, record.seconds, to_string(record.status), tone_of_status(record, data), record.reads});
+    document.chain.push_back({record.name, record.run, record.seconds, to_string(record.status),
+                              tone_of_status(record, data), record.reads});
   }
   add_study_sections(definition, data, document);
   for (const StageRecord& record : result.stages) {

@@ -1,7 +1,7 @@
 #include "pipelines/command_line.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "data/io/atomic_file.hpp"
@@ -31,21 +31,27 @@ struct Arguments {
   bool quiet = false, as_json = false, markdown = false;
 };
 
-std::optional<std::string> given(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
+std::optional<std::string> given(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
+}
 
 json errors_json(const std::vector<data::Diagnostic>& errors, const std::string& outcome, int code) {
   json out{{"outcome", outcome}, {"exit_code", code}, {"errors", json::array()}};
   for (const data::Diagnostic& d : errors) {
     json entry{{"code", d.code}, {"message", d.message}, {"help", d.help}};
-    if (d.where) entry["where"] = {{"file", d.where->file}, {"line", d.where->line}, {"column", d.where->column}};
+    if (d.where)
+      entry["where"] = {{"file", d.where->file}, {"line", d.where->line}, {"column", d.where->column}};
     out["errors"].push_back(std::move(entry));
   }
   return out;
 }
 
-std::string dump(const json& value) { return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n"; }
+std::string dump(const json& value) {
+  return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
 
-int run(const Arguments& a, const Catalogue& catalogue, const Console& console, std::vector<std::string> command_line) {
+int run(const Arguments& a, const Catalogue& catalogue, const Console& console,
+        std::vector<std::string> command_line) {
   RunRequest request;
   request.definition = a.file;
   request.settings = a.settings;
@@ -63,7 +69,8 @@ int run(const Arguments& a, const Catalogue& catalogue, const Console& console, 
     if (!result.failed_stage.empty()) console.err << fmt::format("stage `{}` failed\n", result.failed_stage);
     console.err << data::render(result.errors);
   }
-  if (!result.expectations.empty() && (!a.quiet || result.outcome == Outcome::expectation_failed)) console.err << expectation_table(result.expectations);
+  if (!result.expectations.empty() && (!a.quiet || result.outcome == Outcome::expectation_failed))
+    console.err << expectation_table(result.expectations);
   if (!a.as_json) {
     if (!result.verdict.empty()) console.out << result.verdict << "\n";
     console.out << "report: " << (result.folder / "report.html").string() << "\n";
@@ -93,14 +100,16 @@ int explain(const Arguments& a, const Catalogue& catalogue, const Console& conso
   }
   std::vector<std::string> known = catalogue.names();
   for (const ErrorCode& code : error_codes()) known.push_back(code.code);
-  throw InputError("unknown-stage", fmt::format("`{}` is neither a stage nor the code of a finding", a.file), data::suggest(a.file, known));
+  throw InputError("unknown-stage", fmt::format("`{}` is neither a stage nor the code of a finding", a.file),
+                   data::suggest(a.file, known));
 }
 
 int create(const Arguments& a, const Catalogue& catalogue, const Console& console) {
   const fs::path file = (a.second.empty() ? a.file : a.second) + ".toml";
   const std::string text = render_template(a.file, file.stem().string(), catalogue);
   std::error_code ignored;
-  if (fs::exists(file, ignored)) throw InputError("file-exists", fmt::format("`{}` exists already", file.string()), "give another name");
+  if (fs::exists(file, ignored))
+    throw InputError("file-exists", fmt::format("`{}` exists already", file.string()), "give another name");
   io::write_text_atomically(file, text);
   console.out << file.string() << "\n";
   return 0;
@@ -110,7 +119,9 @@ int import(const Arguments& a, const Console& console) {
   std::map<std::string, std::string> overrides;
   for (const std::string& setting : a.settings) {
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos || equals == 0) throw InputError("bad-setting", fmt::format("`{}` is not of the form KEY=VALUE", setting), "for example --set recordings=folder");
+    if (equals == std::string::npos || equals == 0)
+      throw InputError("bad-setting", fmt::format("`{}` is not of the form KEY=VALUE", setting),
+                       "for example --set recordings=folder");
     overrides[setting.substr(0, equals)] = setting.substr(equals + 1);
   }
   const io::SessionDescription description = io::read_session_description(a.file, overrides);
@@ -121,10 +132,11 @@ int import(const Arguments& a, const Console& console) {
   record.reason = a.file;
   progress.stage_begins(record, 1, 1);
   io::SessionFileWriter writer(a.out);
-  const auto findings = io::import_session(description, writer, [&](double fraction, const std::string& what) {
-    if (console.stop && *console.stop) throw Interrupted();
-    progress.stage_progress(record, fraction, what);
-  });
+  const auto findings =
+      io::import_session(description, writer, [&](double fraction, const std::string& what) {
+        if (console.stop && *console.stop) throw Interrupted();
+        progress.stage_progress(record, fraction, what);
+      });
   writer.commit();
   progress.stage_ends(record, findings);
   console.out << a.out << "\n";
@@ -149,11 +161,14 @@ int guarded(const std::function<int()>& command, const Arguments& a, const Conso
   } catch (const InputError& error) {
     return fail(error.diagnostics(), "input error", 2);
   } catch (const data::ConvergenceFailure& failure) {
-    return fail({{data::Severity::error, "no-convergence", failure.what(), std::nullopt, {}}}, "numerical failure", 1);
+    return fail({{data::Severity::error, "no-convergence", failure.what(), std::nullopt, {}}},
+                "numerical failure", 1);
   } catch (const Interrupted&) {
     return fail({{data::Severity::error, "interrupted", "stopped", std::nullopt, {}}}, "interrupted", 130);
   } catch (const std::exception& defect) {
-    return fail({{data::Severity::error, "internal-error", defect.what(), std::nullopt, "this is a defect of the program, not of your input"}}, "numerical failure", 1);
+    return fail({{data::Severity::error, "internal-error", defect.what(), std::nullopt,
+                  "this is a defect of the program, not of your input"}},
+                "numerical failure", 1);
   }
 }
 
@@ -167,7 +182,9 @@ int command_line(int argc, const char* const* argv, const Catalogue& catalogue, 
   std::function<int()> command;
 
   const auto settings = [&](CLI::App* sub) {
-    sub->add_option("--set", a.settings, "change a key: stage.option=value, pipeline.key=value, variable=value")->allow_extra_args(false);
+    sub->add_option("--set", a.settings,
+                    "change a key: stage.option=value, pipeline.key=value, variable=value")
+        ->allow_extra_args(false);
   };
   CLI::App* sub = app.add_subcommand("run", "run a pipeline");
   sub->add_option("FILE", a.file, "definition")->required();
@@ -211,12 +228,15 @@ int command_line(int argc, const char* const* argv, const Catalogue& catalogue, 
   sub->callback([&] { command = [&] { return import(a, console); }; });
 
   sub = app.add_subcommand("inspect", "what a file or run folder holds");
-  sub->add_option("FILE", a.file, "session, output, subject, scene, description, definition or run folder")->required();
+  sub->add_option("FILE", a.file, "session, output, subject, scene, description, definition or run folder")
+      ->required();
   sub->callback([&] { command = [&] { return console.out << inspect(a.file, catalogue), 0; }; });
 
   sub = app.add_subcommand("report", "write the report of a run again");
   sub->add_option("RUN", a.file, "run folder")->required();
-  sub->callback([&] { command = [&] { return console.out << write_report_again(catalogue, a.file).string() << "\n", 0; }; });
+  sub->callback([&] {
+    command = [&] { return console.out << write_report_again(catalogue, a.file).string() << "\n", 0; };
+  });
 
   sub = app.add_subcommand("compare", "differences of two runs");
   sub->add_option("RUN", a.file, "first run folder")->required();

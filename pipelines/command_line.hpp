@@ -9,10 +9,10 @@
 namespace brachium::pipelines {
 
 struct Console {
-  std::ostream& out;                         ///< results
-  std::ostream& err;                         ///< progress and errors
+  std::ostream& out;  ///< results
+  std::ostream& err;  ///< progress and errors
   bool err_is_terminal = false;
-  const std::atomic<bool>* stop = nullptr;   ///< set when the user wants the run to end
+  const std::atomic<bool>* stop = nullptr;  ///< set when the user wants the run to end
 };
 
 /// Runs one command; returns the exit code: 0 done, 1 numerical failure or missed expectation, 2 wrong input,

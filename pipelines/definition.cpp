@@ -1,7 +1,6 @@
 #include "pipelines/definition.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -34,7 +33,8 @@ class Reader {
   }
 
   Definition read() {
-    AppliedSettings applied = apply_settings(root_, definition_.settings, folder_, fs::current_path(), diagnostics_);
+    AppliedSettings applied =
+        apply_settings(root_, definition_.settings, folder_, fs::current_path(), diagnostics_);
     definition_.variables = std::move(applied.variables);
     definition_.session_overrides = std::move(applied.session_overrides);
     io::TomlTable root(root_, diagnostics_, "a pipeline definition");
@@ -47,7 +47,8 @@ class Reader {
     read_scene();
     for (std::size_t i = 0; i < definition_.stages.size(); ++i) check_inputs(i);
     for (const StageDefinition& stage : definition_.stages) check_trials(stage);
-    for (const Expectation& e : definition_.expectations) check_stage_name(e.stage, "expected number", e.place);
+    for (const Expectation& e : definition_.expectations)
+      check_stage_name(e.stage, "expected number", e.place);
     definition_.order = topological_order(definition_.stages, diagnostics_);
     io::raise_if_errors(diagnostics_);
     for (const Diagnostic& d : diagnostics_) definition_.warnings.push_back(d);
@@ -74,7 +75,9 @@ class Reader {
   void read_pipeline(io::TomlTable& root) {
     auto pipeline = root.table("pipeline");
     if (!pipeline) {
-      if (!root.has("pipeline")) error("missing-key", "the definition has no table [pipeline]", root_.where, "start it with [pipeline] and a title");
+      if (!root.has("pipeline"))
+        error("missing-key", "the definition has no table [pipeline]", root_.where,
+              "start it with [pipeline] and a title");
       return;
     }
     definition_.title = pipeline->require_text("title");
@@ -93,12 +96,14 @@ class Reader {
       // What the command line gave to the session description comes after what the definition gives.
       for (const auto& [key, value] : given->node().members) {
         std::string text = node_text(value);
-        if (key == "recordings" && value.kind == TomlNode::Kind::text) text = node_text(TomlNode::of(resolve(value.text).string()));
+        if (key == "recordings" && value.kind == TomlNode::Kind::text)
+          text = node_text(TomlNode::of(resolve(value.text).string()));
         definition_.session_overrides.emplace(key, std::move(text));
       }
     }
     if (const auto threads = pipeline->integer("threads")) {
-      if (*threads < 0 || *threads > 1024) pipeline->error("out-of-range", "`threads` must lie in 0 (all cores) to 1024", "threads");
+      if (*threads < 0 || *threads > 1024)
+        pipeline->error("out-of-range", "`threads` must lie in 0 (all cores) to 1024", "threads");
       definition_.threads = static_cast<std::size_t>(std::clamp<std::int64_t>(*threads, 0, 1024));
     }
     pipeline->finish();
@@ -106,7 +111,8 @@ class Reader {
 
   void read_stages(io::TomlTable& root) {
     if (!root.has("stage")) {
-      error("missing-key", "the definition has no [[stage]]", root_.where, "`brachium stages` lists what there is");
+      error("missing-key", "the definition has no [[stage]]", root_.where,
+            "`brachium stages` lists what there is");
       return;
     }
     for (io::TomlTable entry : root.tables("stage")) {
@@ -118,33 +124,43 @@ class Reader {
       const std::string run = entry.require_text("run");
       stage.spec = catalogue_.find(run);
       if (!run.empty() && !stage.spec) {
-        entry.error("unknown-stage", fmt::format("there is no stage `{}`", run), "run", data::suggest(run, catalogue_.names()));
+        entry.error("unknown-stage", fmt::format("there is no stage `{}`", run), "run",
+                    data::suggest(run, catalogue_.names()));
       }
       if (const auto trials = entry.texts("trials")) {
         stage.trials = *trials;
         stage.trials_where = entry.span_of("trials");
-        if (trials->empty()) entry.error("out-of-range", fmt::format("`trials` of stage `{}` is an empty list", stage.name), "trials", "leave it out for all trials");
+        if (trials->empty())
+          entry.error("out-of-range", fmt::format("`trials` of stage `{}` is an empty list", stage.name),
+                      "trials", "leave it out for all trials");
       }
       stage.export_sto = entry.boolean("export_sto").value_or(false);
       if (auto input = entry.table("input")) read_wires(*input, stage);
       if (stage.spec) {
-        stage.options = parse_options(entry.node(), stage.spec->options, fmt::format("stage `{}`", run), stage_keys, diagnostics_);
+        stage.options = parse_options(entry.node(), stage.spec->options, fmt::format("stage `{}`", run),
+                                      stage_keys, diagnostics_);
       }
       definition_.stages.push_back(std::move(stage));
     }
   }
 
   void check_new_name(const std::string& name, const data::SourceSpan& where) {
-    const auto good = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'; };
+    const auto good = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+             c == '-';
+    };
     if (!std::all_of(name.begin(), name.end(), good)) {
-      error("bad-name", fmt::format("`{}` cannot name a stage", name), where, "use letters, digits, `_` and `-`: the name becomes part of a file name");
+      error("bad-name", fmt::format("`{}` cannot name a stage", name), where,
+            "use letters, digits, `_` and `-`: the name becomes part of a file name");
     }
     if (name == session_stage && names_session_) {
       error("duplicate-stage", "a stage is called `session`, and the pipeline names a session", where,
-            "that name stands for the pipeline's own recordings; rename the stage or drop `session` from [pipeline]");
+            "that name stands for the pipeline's own recordings; rename the stage or drop `session` from "
+            "[pipeline]");
     }
     if (const StageDefinition* other = definition_.find(name)) {
-      error("duplicate-stage", fmt::format("two stages are called `{}`", name), where, fmt::format("the other one starts in line {}", other->where.line));
+      error("duplicate-stage", fmt::format("two stages are called `{}`", name), where,
+            fmt::format("the other one starts in line {}", other->where.line));
     }
   }
 
@@ -166,7 +182,9 @@ class Reader {
     if (name.empty() || definition_.find(name)) return;
     std::vector<std::string> known;
     for (const StageDefinition& s : definition_.stages) known.push_back(s.name);
-    error("unknown-stage", fmt::format("{} names the stage `{}`, which the pipeline does not have", what, name), where, data::suggest(name, known));
+    error("unknown-stage",
+          fmt::format("{} names the stage `{}`, which the pipeline does not have", what, name), where,
+          data::suggest(name, known));
   }
 
   void check_inputs(std::size_t index) {
@@ -176,37 +194,52 @@ class Reader {
     for (const InputSpec& port : stage.spec->inputs) ports.push_back(port.name);
     for (const auto& [port, wires] : stage.inputs) {
       if (std::find(ports.begin(), ports.end(), port) == ports.end()) {
-        error("unknown-input", fmt::format("stage `{}` has no input `{}`", stage.name, port), wires.empty() ? stage.where : wires.front().where,
-              ports.empty() ? fmt::format("`{}` reads nothing", stage.spec->name) : data::suggest(port, ports));
+        error(
+            "unknown-input", fmt::format("stage `{}` has no input `{}`", stage.name, port),
+            wires.empty() ? stage.where : wires.front().where,
+            ports.empty() ? fmt::format("`{}` reads nothing", stage.spec->name) : data::suggest(port, ports));
       }
     }
     for (const InputSpec& port : stage.spec->inputs) {
       const bool session_at_hand = names_session_ || definition_.find(session_stage);
-      if (!stage.inputs.contains(port.name) && port.defaults_to_session && session_at_hand && stage.name != session_stage) {
+      if (!stage.inputs.contains(port.name) && port.defaults_to_session && session_at_hand &&
+          stage.name != session_stage) {
         stage.inputs[port.name] = {{session_stage, {}, stage.where}};
       }
       const auto wired = stage.inputs.find(port.name);
       if (wired == stage.inputs.end() || wired->second.empty()) {
         if (!port.optional) {
-          error("missing-input", fmt::format("stage `{}` (`{}`) needs the input `{}`: {}", stage.name, stage.spec->name, port.name, port.doc), stage.where,
-                port.defaults_to_session ? "add `session = \"...\"` to [pipeline]" : fmt::format("add input = {{ {} = \"...\" }}", port.name));
+          error("missing-input",
+                fmt::format("stage `{}` (`{}`) needs the input `{}`: {}", stage.name, stage.spec->name,
+                            port.name, port.doc),
+                stage.where,
+                port.defaults_to_session ? "add `session = \"...\"` to [pipeline]"
+                                         : fmt::format("add input = {{ {} = \"...\" }}", port.name));
         }
         continue;
       }
       if (!port.many && wired->second.size() > 1) {
-        error("too-many-inputs", fmt::format("input `{}` of stage `{}` takes one stage, not {}", port.name, stage.name, wired->second.size()), wired->second[1].where);
+        error("too-many-inputs",
+              fmt::format("input `{}` of stage `{}` takes one stage, not {}", port.name, stage.name,
+                          wired->second.size()),
+              wired->second[1].where);
       }
       for (const Wire& wire : wired->second) check_wire(stage, port, wire);
     }
     if (stage.spec->needs_scene && !names_scene_) {
-      error("missing-scene", fmt::format("stage `{}` (`{}`) needs a scene, and the pipeline names none", stage.name, stage.spec->name), stage.where,
-            "add `scene = \"...\"` to [pipeline]");
+      error("missing-scene",
+            fmt::format("stage `{}` (`{}`) needs a scene, and the pipeline names none", stage.name,
+                        stage.spec->name),
+            stage.where, "add `scene = \"...\"` to [pipeline]");
     }
   }
 
   void check_wire(const StageDefinition& stage, const InputSpec& port, const Wire& wire) {
     const auto wrong_port = [&](const std::string& what) {
-      error("wrong-port", fmt::format("input `{}` of stage `{}` takes {}, but {}", port.name, stage.name, to_string(port.type), what), wire.where);
+      error("wrong-port",
+            fmt::format("input `{}` of stage `{}` takes {}, but {}", port.name, stage.name,
+                        to_string(port.type), what),
+            wire.where);
     };
     if (wire.stage.empty()) {
       if (port.type != PortType::subject) {
@@ -221,7 +254,9 @@ class Reader {
       return;
     }
     const StageDefinition* source = definition_.find(wire.stage);
-    if (!source) return check_stage_name(wire.stage, fmt::format("input `{}` of stage `{}`", port.name, stage.name), wire.where);
+    if (!source)
+      return check_stage_name(wire.stage, fmt::format("input `{}` of stage `{}`", port.name, stage.name),
+                              wire.where);
     // Every stage may leave tables; signals and subjects are what a stage is for.
     if (source->spec && port.type != PortType::tables && source->spec->output != port.type) {
       wrong_port(fmt::format("stage `{}` gives {}", source->name, to_string(source->spec->output)));
@@ -239,7 +274,8 @@ class Reader {
     if (definition_.session.empty()) return;
     try {
       if (definition_.session_is_description()) {
-        const io::SessionDescription description = io::read_session_description(definition_.session, definition_.session_overrides);
+        const io::SessionDescription description =
+            io::read_session_description(definition_.session, definition_.session_overrides);
         for (const io::TrialDescription& trial : description.trials) trials_.push_back(trial.info.name);
         for (Diagnostic& d : io::check_session(description)) diagnostics_.push_back(std::move(d));
       } else {
@@ -247,7 +283,8 @@ class Reader {
         for (const data::TrialInfo& trial : session.info().trials) {
           trials_.push_back(trial.name);
           for (const data::SignalInfo& signal : trial.signals) {
-            if (signal.quantity == data::Quantity::emg && std::find(channels_.begin(), channels_.end(), signal.name) == channels_.end()) {
+            if (signal.quantity == data::Quantity::emg &&
+                std::find(channels_.begin(), channels_.end(), signal.name) == channels_.end()) {
               channels_.push_back(signal.name);
             }
           }
@@ -268,14 +305,17 @@ class Reader {
     }
   }
 
-  /// Patterns can be checked now where the stage works on the session itself; others are checked when it runs.
+  /// Patterns can be checked now where the stage works on the session itself; others are checked when it
+  /// runs.
   void check_trials(const StageDefinition& stage) {
     if (!stage.spec || stage.trials.empty()) return;
-    const auto first = std::find_if(stage.spec->inputs.begin(), stage.spec->inputs.end(), [&](const InputSpec& port) {
-      return port.type == PortType::signals && stage.inputs.contains(port.name);
-    });
+    const auto first =
+        std::find_if(stage.spec->inputs.begin(), stage.spec->inputs.end(), [&](const InputSpec& port) {
+          return port.type == PortType::signals && stage.inputs.contains(port.name);
+        });
     if (first == stage.spec->inputs.end()) {
-      error("no-match", fmt::format("stage `{}` has `trials`, but reads no signals", stage.name), stage.trials_where);
+      error("no-match", fmt::format("stage `{}` has `trials`, but reads no signals", stage.name),
+            stage.trials_where);
       return;
     }
     const auto& wires = stage.inputs.at(first->name);
@@ -308,99 +348,19 @@ const StageDefinition* Definition::find(const std::string& stage) const {
 
 std::string to_string(PortType type) {
   switch (type) {
-    case PortType::signals: return "signals";
-    case PortType::subject: return "a subject";
-    case PortType::tables: return "tables";
+    case PortType::signals:
+      return "signals";
+    case PortType::subject:
+      return "a subject";
+    case PortType::tables:
+      return "tables";
   }
   return "signals";
 }
 
-Definition read_definition(const fs::path& file, std::span<const std::string> settings, const Catalogue& catalogue) {
+Definition read_definition(const fs::path& file, std::span<const std::string> settings,
+                           const Catalogue& catalogue) {
   return Reader(file, settings, catalogue).read();
-}
-
-std::vector<std::size_t> topological_order(std::span<const StageDefinition> stages, std::vector<Diagnostic>& diagnostics) {
-  enum class Mark { fresh, open, done };
-  std::map<std::string, std::size_t> index;
-  for (std::size_t i = 0; i < stages.size(); ++i) index.emplace(stages[i].name, i);
-  std::vector<Mark> marks(stages.size(), Mark::fresh);
-  std::vector<std::size_t> order, path;
-  const auto visit = [&](auto& self, std::size_t i) -> void {
-    marks[i] = Mark::open;
-    path.push_back(i);
-    for (const auto& [port, wires] : stages[i].inputs) {
-      for (const Wire& wire : wires) {
-        const auto source = index.find(wire.stage);
-        if (source == index.end()) continue;
-        if (marks[source->second] == Mark::open) {
-          std::string loop;
-          for (auto at = std::find(path.begin(), path.end(), source->second); at != path.end(); ++at) loop += fmt::format("`{}` reads ", stages[*at].name);
-          diagnostics.push_back({Severity::error, "cycle", fmt::format("stages wait for each other: {}`{}`", loop, wire.stage), wire.where, "a stage can read only stages that do not read it"});
-        } else if (marks[source->second] == Mark::fresh) {
-          self(self, source->second);
-        }
-      }
-    }
-    path.pop_back();
-    marks[i] = Mark::done;
-    order.push_back(i);
-  };
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    if (marks[i] == Mark::fresh) visit(visit, i);
-  }
-  return order;
-}
-
-std::string resolved_text(const Definition& definition) {
-  TomlNode root = TomlNode::table();
-  TomlNode& pipeline = root.member("pipeline");
-  pipeline.member("title") = TomlNode::of(definition.title);
-  if (!definition.session.empty()) pipeline.member("session") = TomlNode::of(definition.session.string());
-  if (!definition.scene_file.empty()) pipeline.member("scene") = TomlNode::of(definition.scene_file.string());
-  pipeline.member("threads") = TomlNode::of(static_cast<std::int64_t>(definition.threads));
-  for (const auto& [key, value] : definition.session_overrides) {
-    pipeline.member("session_settings").member(key) = io::parse_toml_value(value, {});
-  }
-  TomlNode list;
-  list.kind = TomlNode::Kind::array;
-  for (const StageDefinition& stage : definition.stages) {
-    TomlNode entry = TomlNode::table();
-    entry.member("name") = TomlNode::of(stage.name);
-    entry.member("run") = TomlNode::of(stage.spec->name);
-    if (!stage.inputs.empty()) {
-      TomlNode& input = entry.member("input");
-      for (const auto& [port, wires] : stage.inputs) {
-        std::vector<std::string> names;
-        for (const Wire& wire : wires) names.push_back(wire.stage.empty() ? "file:" + wire.file.string() : wire.stage);
-        input.member(port) = names.size() == 1 ? TomlNode::of(names.front()) : TomlNode::of(names);
-      }
-    }
-    if (!stage.trials.empty()) entry.member("trials") = TomlNode::of(stage.trials);
-    if (stage.export_sto) entry.member("export_sto") = TomlNode::of(true);
-    for (auto& [key, value] : options_tree(stage.options, stage.spec->options).members) entry.member(key) = value;
-    list.items.push_back(std::move(entry));
-  }
-  root.member("stage") = std::move(list);
-  TomlNode expectations;
-  expectations.kind = TomlNode::Kind::array;
-  for (const Expectation& e : definition.expectations) {
-    TomlNode entry = TomlNode::table();
-    entry.member("name") = TomlNode::of(e.name);
-    entry.member("stage") = TomlNode::of(e.stage);
-    entry.member("table") = TomlNode::of(e.table);
-    entry.member("column") = TomlNode::of(e.column);
-    for (const auto& [column, wanted] : e.where) entry.member("where").member(column) = TomlNode::of(wanted);
-    if (e.row) entry.member("row") = TomlNode::of(static_cast<std::int64_t>(*e.row));
-    if (e.value) entry.member("value") = TomlNode::of(*e.value);
-    if (e.value) entry.member("tolerance") = TomlNode::of(e.tolerance);
-    if (e.minimum) entry.member("min") = TomlNode::of(*e.minimum);
-    if (e.maximum) entry.member("max") = TomlNode::of(*e.maximum);
-    expectations.items.push_back(std::move(entry));
-  }
-  if (!expectations.items.empty()) root.member("expect") = std::move(expectations);
-  std::string text = "# The definition as it was run: every option written out, paths absolute.\n";
-  for (const std::string& setting : definition.settings) text += "# --set " + setting + "\n";
-  return text + "\n" + io::write_toml(root);
 }
 
 }  // namespace brachium::pipelines

@@ -1,6 +1,7 @@
 #pragma once
-/// A pipeline definition: which stages, wired how, with which options, on which session and scene. A TOML file,
-/// documented key by key in pipelines/README.md. Reading it finds every mistake that can be found before running.
+/// A pipeline definition: which stages, wired how, with which options, on which session and scene. A TOML
+/// file, documented key by key in pipelines/README.md. Reading it finds every mistake that can be found
+/// before running.
 
 #include <filesystem>
 #include <map>
@@ -44,28 +45,29 @@ struct Definition {
   std::map<std::string, std::string> session_overrides;  ///< key of the description -> TOML value
   std::filesystem::path scene_file;                      ///< absolute, empty: none
   std::optional<data::Scene> scene;
-  std::size_t threads = 0;                   ///< 0: all cores
-  io::TomlNode variables;                    ///< table: name -> value
-  std::vector<StageDefinition> stages;       ///< in the order of the file
-  std::vector<std::size_t> order;            ///< indices of stages: each after all it reads
+  std::size_t threads = 0;              ///< 0: all cores
+  io::TomlNode variables;               ///< table: name -> value
+  std::vector<StageDefinition> stages;  ///< in the order of the file
+  std::vector<std::size_t> order;       ///< indices of stages: each after all it reads
   std::vector<Expectation> expectations;
-  std::vector<std::string> settings;         ///< KEY=VALUE texts that were applied
-  std::vector<data::Diagnostic> warnings;    ///< of session and scene
+  std::vector<std::string> settings;       ///< KEY=VALUE texts that were applied
+  std::vector<data::Diagnostic> warnings;  ///< of session and scene
 
   bool session_is_description() const { return session.extension() == ".toml"; }
   const StageDefinition* find(const std::string& stage) const;
 };
 
-/// Reads and checks a definition; paths in it are relative to its folder, paths in `settings` to the current one.
-/// Throws InputError with all mistakes at once: those of the definition, of its scene and of its session description.
+/// Reads and checks a definition; paths in it are relative to its folder, paths in `settings` to the current
+/// one. The definition refers to the catalogue, which must outlive it. Throws InputError with all mistakes at
+/// once: those of the definition, of its scene and of its session description.
 Definition read_definition(const std::filesystem::path& file, std::span<const std::string> settings,
                            const Catalogue& catalogue);
 
 /// The definition with every default written out and paths absolute; reading it gives the same definition.
 std::string resolved_text(const Definition& definition);
 
-/// Indices of `stages` in an order in which each follows all stages it reads, as early in the file as possible.
-/// A loop is added to `diagnostics` ("cycle") with the names of its stages.
+/// Indices of `stages` in an order in which each follows all stages it reads, as early in the file as
+/// possible. A loop is added to `diagnostics` ("cycle") with the names of its stages.
 std::vector<std::size_t> topological_order(std::span<const StageDefinition> stages,
                                            std::vector<data::Diagnostic>& diagnostics);
 

@@ -68,8 +68,8 @@ void option_lines(const std::vector<OptionSpec>& options, const std::string& ind
 
 void option_rows(const std::vector<OptionSpec>& options, const std::string& prefix, std::string& out) {
   for (const OptionSpec& option : options) {
-    out += fmt::format("| `{}{}` | {} | `{}` | {} |\n", prefix, option.key, escaped_cell(kind_text(option)), escaped_cell(default_text(option)),
-                       escaped_cell(option.doc));
+    out += fmt::format("| `{}{}` | {} | `{}` | {} |\n", prefix, option.key, escaped_cell(kind_text(option)),
+                       escaped_cell(default_text(option)), escaped_cell(option.doc));
     option_rows(option.fields, prefix + option.key + ".", out);
   }
 }
@@ -93,7 +93,8 @@ std::string stage_list(const Catalogue& catalogue) {
   std::size_t width = 0;
   for (const StageSpec& stage : catalogue.stages()) width = std::max(width, stage.name.size());
   std::string out;
-  for (const StageSpec& stage : catalogue.stages()) out += fmt::format("{:<{}}  {}\n", stage.name, width, stage.summary);
+  for (const StageSpec& stage : catalogue.stages())
+    out += fmt::format("{:<{}}  {}\n", stage.name, width, stage.summary);
   return out;
 }
 
@@ -105,7 +106,8 @@ std::string manual(const Catalogue& catalogue) {
     out += fmt::format("Gives {}.{}\n", to_string(stage.output), stage.needs_scene ? " Needs a scene." : "");
     if (!stage.inputs.empty()) out += "\n| input | takes | meaning |\n|---|---|---|\n";
     for (const InputSpec& port : stage.inputs) {
-      out += fmt::format("| `{}` | {} | {} |\n", port.name, escaped_cell(need_text(port)), escaped_cell(port.doc));
+      out += fmt::format("| `{}` | {} | {} |\n", port.name, escaped_cell(need_text(port)),
+                         escaped_cell(port.doc));
     }
     if (!stage.options.empty()) out += "\n| option | value | default | meaning |\n|---|---|---|---|\n";
     option_rows(stage.options, "", out);

@@ -32,7 +32,8 @@ double find_number(const Expectation& e, const StageData& output) {
   if (found == output.tables.end()) {
     std::vector<std::string> known;
     for (const auto& [name, table] : output.tables) known.push_back(name);
-    throw data::InputError("missing-table", fmt::format("stage `{}` has no table `{}`", e.stage, e.table), data::suggest(e.table, known));
+    throw data::InputError("missing-table", fmt::format("stage `{}` has no table `{}`", e.stage, e.table),
+                           data::suggest(e.table, known));
   }
   const data::Table& table = found->second;
   const std::vector<double>& numbers = table.numbers(e.column);
@@ -41,12 +42,15 @@ double find_number(const Expectation& e, const StageData& output) {
     if ((!e.row || *e.row == r) && row_matches(table, r, e.where)) rows.push_back(r);
   }
   if (rows.size() != 1) {
-    throw data::InputError("ambiguous-row", fmt::format("{} rows of `{}` are selected instead of one", rows.size(), e.table));
+    throw data::InputError("ambiguous-row",
+                           fmt::format("{} rows of `{}` are selected instead of one", rows.size(), e.table));
   }
   return numbers[rows.front()];
 }
 
-std::string number_text(double value) { return fmt::format("{:.6g}", value); }
+std::string number_text(double value) {
+  return fmt::format("{:.6g}", value);
+}
 
 }  // namespace
 
@@ -65,7 +69,11 @@ std::vector<Expectation> parse_expectations(io::TomlTable& root, std::vector<dat
       for (const auto& [column, wanted] : where->node().members) {
         const bool numeric = wanted.kind == TomlNode::Kind::number || wanted.kind == TomlNode::Kind::integer;
         if (!numeric && wanted.kind != TomlNode::Kind::text) {
-          diagnostics.push_back({Severity::error, "wrong-type", fmt::format("`{}` in `where` must be a text or a number", column), wanted.where, {}});
+          diagnostics.push_back({Severity::error,
+                                 "wrong-type",
+                                 fmt::format("`{}` in `where` must be a text or a number", column),
+                                 wanted.where,
+                                 {}});
         }
         e.where[column] = numeric ? fmt::format("{}", wanted.number) : wanted.text;
       }
@@ -78,7 +86,8 @@ std::vector<Expectation> parse_expectations(io::TomlTable& root, std::vector<dat
     const auto tolerance = entry.number("tolerance");
     e.minimum = entry.number("min");
     e.maximum = entry.number("max");
-    if (tolerance && !(*tolerance >= 0.0)) entry.error("out-of-range", "`tolerance` must be 0 or greater", "tolerance");
+    if (tolerance && !(*tolerance >= 0.0))
+      entry.error("out-of-range", "`tolerance` must be 0 or greater", "tolerance");
     if (e.value && !tolerance) entry.error("missing-key", "an expected `value` needs a `tolerance`");
     if (!e.value && tolerance) entry.error("missing-key", "a `tolerance` needs the expected `value`");
     e.tolerance = tolerance.value_or(0.0);
@@ -129,8 +138,12 @@ std::string place_text(const Expectation& e) {
 std::string expectation_table(std::span<const ExpectationResult> results) {
   std::vector<std::array<std::string, 4>> rows{{"expected number", "wanted", "found", ""}};
   for (const ExpectationResult& r : results) {
-    rows.push_back({place_text(*r.expectation), wanted_text(*r.expectation), r.found ? number_text(*r.found) : "-",
-                    !r.checked ? "not checked: " + r.remark : r.passed ? "ok" : r.remark.empty() ? "FAILED" : "FAILED: " + r.remark});
+    rows.push_back({place_text(*r.expectation), wanted_text(*r.expectation),
+                    r.found ? number_text(*r.found) : "-",
+                    !r.checked         ? "not checked: " + r.remark
+                    : r.passed         ? "ok"
+                    : r.remark.empty() ? "FAILED"
+                                       : "FAILED: " + r.remark});
   }
   std::array<std::size_t, 4> width{};
   for (const auto& row : rows) {
@@ -138,7 +151,8 @@ std::string expectation_table(std::span<const ExpectationResult> results) {
   }
   std::string text;
   for (const auto& row : rows) {
-    std::string line = fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}", row[0], width[0], row[1], width[1], row[2], width[2], row[3]);
+    std::string line = fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}", row[0], width[0], row[1], width[1], row[2],
+                                   width[2], row[3]);
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }

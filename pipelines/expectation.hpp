@@ -1,5 +1,6 @@
 #pragma once
-/// Expected numbers that a definition carries: [[expect]] names a number of a stage's table and what it should be.
+/// Expected numbers that a definition carries: [[expect]] names a number of a stage's table and what it
+/// should be.
 
 #include <map>
 #include <optional>
@@ -29,7 +30,7 @@ struct ExpectationResult {
   bool checked = false;  ///< false: its stage was not part of this run
   bool passed = false;
   std::optional<double> found;
-  std::string remark;    ///< why there is no number
+  std::string remark;  ///< why there is no number
 };
 
 std::vector<Expectation> parse_expectations(io::TomlTable& root, std::vector<data::Diagnostic>& diagnostics);

@@ -5,8 +5,9 @@
 
 namespace brachium::pipelines {
 
-/// <stage>.subject.toml where the output has a subject; with `export_sto`, <NN>-<stage>-<trial>.sto (one file for
-/// each distinct set of time stamps). Files that stand are not written again. Throws InputError("write-failed", ...).
+/// <stage>.subject.toml where the output has a subject; with `export_sto`, <NN>-<stage>-<trial>.sto (one file
+/// for each distinct set of time stamps). Files that stand are not written again. Throws
+/// InputError("write-failed", ...).
 void write_exports(const StageDefinition& stage, const StageRecord& record, const StageData& data);
 
 }  // namespace brachium::pipelines

@@ -15,14 +15,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string shortened(const std::string& text) { return text.size() <= 48 ? text : text.substr(0, 45) + "..."; }
+std::string shortened(const std::string& text) {
+  return text.size() <= 48 ? text : text.substr(0, 45) + "...";
+}
 
 std::optional<std::string> part(const Fingerprint& fingerprint, const std::string& key) {
   const auto found = fingerprint.find(key);
   return found == fingerprint.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::string change_text(const std::string& key, const std::optional<std::string>& was, const std::optional<std::string>& is) {
+std::string change_text(const std::string& key, const std::optional<std::string>& was,
+                        const std::optional<std::string>& is) {
   const std::size_t dot = key.find('.');
   const std::string group = key.substr(0, dot), name = dot == std::string::npos ? "" : key.substr(dot + 1);
   if (group == "option") {
@@ -35,7 +38,8 @@ std::string change_text(const std::string& key, const std::optional<std::string>
     const auto source = [](const std::string& text) { return text.substr(0, text.rfind(' ')); };
     if (!was) return fmt::format("input {} now reads `{}` too", port, source(*is));
     if (!is) return fmt::format("input {} no longer reads `{}`", port, source(*was));
-    if (source(*was) != source(*is)) return fmt::format("input {} reads `{}` instead of `{}`", port, source(*is), source(*was));
+    if (source(*was) != source(*is))
+      return fmt::format("input {} reads `{}` instead of `{}`", port, source(*is), source(*was));
     const bool stage = !source(*is).starts_with("file:") && !source(*is).starts_with("recordings:");
     return fmt::format("input `{}` {}", source(*is), stage ? "ran again" : "has another content");
   }
@@ -43,17 +47,22 @@ std::string change_text(const std::string& key, const std::optional<std::string>
     if (!was) return fmt::format("the recording `{}` is new", name);
     return fmt::format("the recording `{}` {}", name, is ? "changed" : "is gone");
   }
-  if (group == "program") return fmt::format("the program changed {} -> {}", was.value_or("unknown"), is.value_or("unknown"));
-  if (group == "stage") return fmt::format("it ran as {}, now as {}", was.value_or("unknown"), is.value_or("unknown"));
-  if (group == "scene") return was && is ? "the scene changed" : is ? "a scene was added" : "the scene is gone";
-  return fmt::format("{} changed {} -> {}", key, shortened(was.value_or("none")), shortened(is.value_or("none")));
+  if (group == "program")
+    return fmt::format("the program changed {} -> {}", was.value_or("unknown"), is.value_or("unknown"));
+  if (group == "stage")
+    return fmt::format("it ran as {}, now as {}", was.value_or("unknown"), is.value_or("unknown"));
+  if (group == "scene")
+    return was && is ? "the scene changed" : is ? "a scene was added" : "the scene is gone";
+  return fmt::format("{} changed {} -> {}", key, shortened(was.value_or("none")),
+                     shortened(is.value_or("none")));
 }
 
 }  // namespace
 
 std::string digest(const Fingerprint& fingerprint) {
   Sha256 hash;
-  for (const auto& [key, value] : fingerprint) hash.add(fmt::format("{}:{}={}:{};", key.size(), key, value.size(), value));
+  for (const auto& [key, value] : fingerprint)
+    hash.add(fmt::format("{}:{}={}:{};", key.size(), key, value.size(), value));
   return hash.finish();
 }
 
@@ -68,6 +77,9 @@ Fingerprint stage_fingerprint(const StageDefinition& stage) {
 }
 
 std::string difference_text(const Fingerprint& stored, const Fingerprint& wanted) {
+  // Another stage altogether: that its options differ as well says nothing more.
+  if (part(stored, "stage") != part(wanted, "stage"))
+    return change_text("stage", part(stored, "stage"), part(wanted, "stage"));
   std::set<std::string> keys;
   for (const auto& [key, value] : stored) keys.insert(key);
   for (const auto& [key, value] : wanted) keys.insert(key);
@@ -87,7 +99,8 @@ FileDigests::FileDigests(fs::path memory) : memory_(std::move(memory)) {
   std::error_code ignored;
   if (!fs::is_regular_file(memory_, ignored)) return;
   try {
-    for (const auto& [file, entry] : nlohmann::json::parse(io::read_text(memory_)).items()) {
+    const nlohmann::json all = nlohmann::json::parse(io::read_text(memory_));
+    for (const auto& [file, entry] : all.items()) {
       entries_[file] = {entry.at("size"), entry.at("changed"), entry.at("sha256")};
     }
   } catch (const std::exception&) {
@@ -111,8 +124,10 @@ std::string FileDigests::of(const fs::path& file) {
 
 void FileDigests::save() const {
   nlohmann::json all = nlohmann::json::object();
-  for (const auto& [file, entry] : entries_) all[file] = {{"size", entry.size}, {"changed", entry.changed}, {"sha256", entry.digest}};
-  io::write_text_atomically(memory_, all.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  for (const auto& [file, entry] : entries_)
+    all[file] = {{"size", entry.size}, {"changed", entry.changed}, {"sha256", entry.digest}};
+  io::write_text_atomically(memory_,
+                            all.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace brachium::pipelines

@@ -1,6 +1,6 @@
 #pragma once
-/// What a stage's output was made from, part by part, so that the runner can tell whether it still stands and, if
-/// not, why.
+/// What a stage's output was made from, part by part, so that the runner can tell whether it still stands
+/// and, if not, why.
 
 #include <filesystem>
 #include <map>
@@ -21,12 +21,12 @@ std::string digest(const Fingerprint& fingerprint);
 /// Parts that the definition alone determines; inputs, scene and program are added by the runner.
 Fingerprint stage_fingerprint(const StageDefinition& stage);
 
-/// Why an output with fingerprint `stored` does not do for `wanted`: "option lowpass_hz changed 6.0 -> 4.0, input
-/// `excitation` ran again". Empty if it does.
+/// Why an output with fingerprint `stored` does not do for `wanted`: "option lowpass_hz changed 6.0 -> 4.0,
+/// input `excitation` ran again". Empty if it does.
 std::string difference_text(const Fingerprint& stored, const Fingerprint& wanted);
 
-/// SHA-256 of files, remembered in a file together with size and time of change, so that a large recording is read
-/// once and not at every run.
+/// SHA-256 of files, remembered in a file together with size and time of change, so that a large recording is
+/// read once and not at every run.
 class FileDigests {
  public:
   /// Starts from what is remembered in `memory`; a damaged memory is forgotten.

@@ -26,8 +26,9 @@ std::string signals_text(const data::SessionInfo& session) {
     for (const auto& [name, value] : trial.conditions) out += fmt::format(", {} = {:g}", name, value);
     out += "\n";
     for (const data::SignalInfo& s : trial.signals) {
-      out += fmt::format("  {:<24} {:<20} {:>10} samples at {:g} Hz from {:g} s [{}]{}\n", s.name, data::to_string(s.quantity), s.count, s.rate_hz,
-                         s.start_time_s, s.unit, s.muscle.empty() ? "" : " " + s.muscle);
+      out += fmt::format("  {:<24} {:<20} {:>10} samples at {:g} Hz from {:g} s [{}]{}\n", s.name,
+                         data::to_string(s.quantity), s.count, s.rate_hz, s.start_time_s, s.unit,
+                         s.muscle.empty() ? "" : " " + s.muscle);
     }
   }
   return out;
@@ -35,7 +36,8 @@ std::string signals_text(const data::SessionInfo& session) {
 
 std::string table_text(const std::string& name, const data::Table& table) {
   constexpr std::size_t shown = 40;
-  std::string out = fmt::format("table {}{} ({} rows)\n", name, table.title.empty() ? "" : ": " + table.title, table.rows());
+  std::string out = fmt::format("table {}{} ({} rows)\n", name, table.title.empty() ? "" : ": " + table.title,
+                                table.rows());
   std::vector<std::vector<std::string>> columns;
   for (const data::Column& c : table.columns) {
     std::vector<std::string> cells{c.name + (c.unit.empty() || c.unit == "1" ? "" : " [" + c.unit + "]")};
@@ -66,8 +68,8 @@ std::string subject_text(const data::Subject& subject) {
   std::string out = fmt::format("subject {}: {} muscles\n", subject.name, subject.muscles.size());
   for (const auto& [key, value] : subject.statistics) out += fmt::format("  {} = {:.5g}\n", key, value);
   for (const data::ParameterVerdict& v : subject.verdicts) {
-    out += fmt::format("  {:<12} {:<28} {:>12.5g} -> {:>12.5g} {:<6} [{:.4g}, {:.4g}]  {} {}\n", v.muscle, v.parameter, v.start, v.fitted, v.unit, v.lower,
-                       v.upper, v.verdict, v.remark);
+    out += fmt::format("  {:<12} {:<28} {:>12.5g} -> {:>12.5g} {:<6} [{:.4g}, {:.4g}]  {} {}\n", v.muscle,
+                       v.parameter, v.start, v.fitted, v.unit, v.lower, v.upper, v.verdict, v.remark);
   }
   return out;
 }
@@ -88,12 +90,16 @@ std::string hdf5_text(const fs::path& file) {
 std::string scene_text(const data::Scene& scene) {
   std::string out = fmt::format("scene {}\n", scene.title);
   if (!scene.wanted.empty()) out += fmt::format("wanted: {}\n", fmt::join(scene.wanted, ", "));
-  for (const data::Coordinate& c : scene.coordinates) out += fmt::format("coordinate {} from {:.4g} to {:.4g} rad\n", c.name, c.lower_rad, c.upper_rad);
-  for (const data::Segment& s : scene.segments) out += fmt::format("segment {}: {:.4g} kg at {:.4g} m, {:.4g} kg m^2\n", s.name, s.mass_kg, s.centre_of_mass_m, s.inertia_kg_m2);
+  for (const data::Coordinate& c : scene.coordinates)
+    out += fmt::format("coordinate {} from {:.4g} to {:.4g} rad\n", c.name, c.lower_rad, c.upper_rad);
+  for (const data::Segment& s : scene.segments)
+    out += fmt::format("segment {}: {:.4g} kg at {:.4g} m, {:.4g} kg m^2\n", s.name, s.mass_kg,
+                       s.centre_of_mass_m, s.inertia_kg_m2);
   for (const data::Load& l : scene.loads) out += fmt::format("load {} at {:.4g} m\n", l.name, l.distance_m);
   for (const data::SceneMuscle& m : scene.muscles) {
-    out += fmt::format("muscle {:<12} F0 {:.4g} N, optimal fibre length {:.4g} m, slack length {:.4g} m\n", m.name, m.parameters.max_isometric_force_N,
-                       m.parameters.optimal_fibre_length_m, m.parameters.tendon_slack_length_m);
+    out += fmt::format("muscle {:<12} F0 {:.4g} N, optimal fibre length {:.4g} m, slack length {:.4g} m\n",
+                       m.name, m.parameters.max_isometric_force_N, m.parameters.optimal_fibre_length_m,
+                       m.parameters.tendon_slack_length_m);
   }
   return out + data::render(scene.notes);
 }
@@ -106,7 +112,8 @@ std::string definition_text(const Definition& d) {
     const StageDefinition& s = d.stages[i];
     out += fmt::format("{:02} {} ({})", s.number, s.name, s.spec->name);
     for (const auto& [port, wires] : s.inputs) {
-      for (const Wire& wire : wires) out += fmt::format("  {} <- {}", port, wire.stage.empty() ? wire.file.string() : wire.stage);
+      for (const Wire& wire : wires)
+        out += fmt::format("  {} <- {}", port, wire.stage.empty() ? wire.file.string() : wire.stage);
     }
     out += "\n";
   }
@@ -116,7 +123,8 @@ std::string definition_text(const Definition& d) {
 std::string run_text(const fs::path& folder) {
   std::string out = "run " + folder.string() + "\n";
   for (const StageRecord& s : read_stage_records(folder)) {
-    out += fmt::format("{:<20} {:<24} {:<8} {:>8.2f} s  {}\n", s.name, s.run, to_string(s.status), s.seconds, s.reason);
+    out += fmt::format("{:<20} {:<24} {:<8} {:>8.2f} s  {}\n", s.name, s.run, to_string(s.status), s.seconds,
+                       s.reason);
   }
   return out;
 }
@@ -129,7 +137,8 @@ std::string inspect(const fs::path& file, const Catalogue& catalogue) {
   if (file.extension() == ".h5" || file.extension() == ".hdf5") return hdf5_text(file);
   if (file.extension() == ".toml") {
     const io::TomlNode root = io::read_toml(file);
-    if (root.find("pipeline") || root.find("stage")) return definition_text(read_definition(file, {}, catalogue));
+    if (root.find("pipeline") || root.find("stage"))
+      return definition_text(read_definition(file, {}, catalogue));
     if (root.find("session") || root.find("trial")) {
       const io::SessionDescription d = io::read_session_description(file);
       std::string out = fmt::format("session description, recordings in {}\n", d.recordings.string());
@@ -137,12 +146,15 @@ std::string inspect(const fs::path& file, const Catalogue& catalogue) {
       for (const io::TrialDescription& trial : d.trials) session.trials.push_back(trial.info);
       return out + signals_text(session);
     }
-    if (root.find("scene") || root.find("coordinate") || root.find("segment")) return scene_text(io::read_scene(file));
+    if (root.find("scene") || root.find("coordinate") || root.find("segment"))
+      return scene_text(io::read_scene(file));
     return subject_text(io::read_subject(file));
   }
-  if (!fs::exists(file, ignored)) throw data::InputError("missing-file", fmt::format("cannot read `{}`", file.string()), "check the path");
+  if (!fs::exists(file, ignored))
+    throw data::InputError("missing-file", fmt::format("cannot read `{}`", file.string()), "check the path");
   throw data::InputError("unknown-file", fmt::format("`{}` is none of this program's files", file.string()),
-                         "sessions and outputs end in .h5; subjects, scenes, descriptions and definitions in .toml; a run is a folder");
+                         "sessions and outputs end in .h5; subjects, scenes, descriptions and definitions in "
+                         ".toml; a run is a folder");
 }
 
 }  // namespace brachium::pipelines

@@ -8,5 +8,6 @@
 int main(int argc, char** argv) {
   namespace pipelines = brachium::pipelines;
   const std::atomic<bool>& stop = pipelines::watch_interrupts();
-  return pipelines::command_line(argc, argv, pipelines::built_in_catalogue(), {std::cout, std::cerr, ::isatty(STDERR_FILENO) == 1, &stop});
+  return pipelines::command_line(argc, argv, pipelines::built_in_catalogue(),
+                                 {std::cout, std::cerr, ::isatty(STDERR_FILENO) == 1, &stop});
 }

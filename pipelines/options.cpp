@@ -17,15 +17,16 @@ using data::Severity;
 using io::TomlNode;
 
 /// Endings of option names that are units, longest first so that "rad_s" is not taken for "s".
-constexpr std::array unit_endings{"kg_m2", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s", "m_s", "khz",
-                                  "mhz",   "hz",       "min",     "rad",   "deg",   "Nm",   "kN",  "kg",  "mg",  "lb",
-                                  "ms",    "us",       "mm",      "cm",    "mV",    "uV",   "uv",  "mv",  "s",   "m",
-                                  "g",     "N",        "V",       "norm"};
+constexpr std::array unit_endings{
+    "kg_m2", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s", "m_s", "khz", "mhz", "hz",
+    "min",   "rad",      "deg",     "Nm",    "kN",    "kg",   "mg",  "lb",  "ms",  "us",  "mm",  "cm",
+    "mV",    "uV",       "uv",      "mv",    "s",     "m",    "g",   "N",   "V",   "norm"};
 
 /// An option's name without its unit: "lowpass_hz" -> "lowpass".
 std::string stem_of(const std::string& key) {
   for (const std::string ending : unit_endings) {
-    if (key.size() > ending.size() + 1 && key.ends_with("_" + ending)) return key.substr(0, key.size() - ending.size() - 1);
+    if (key.size() > ending.size() + 1 && key.ends_with("_" + ending))
+      return key.substr(0, key.size() - ending.size() - 1);
   }
   return key;
 }
@@ -34,13 +35,17 @@ std::string with_article(OptionType type) {
   return type == OptionType::boolean ? to_string(type) : "a " + to_string(type);
 }
 
-std::string bound_text(double bound) { return fmt::format("{:g}", bound); }
+std::string bound_text(double bound) {
+  return fmt::format("{:g}", bound);
+}
 
 class Reader {
  public:
-  Reader(const std::string& owner, std::vector<Diagnostic>& diagnostics) : owner_(owner), diagnostics_(diagnostics) {}
+  Reader(const std::string& owner, std::vector<Diagnostic>& diagnostics)
+      : owner_(owner), diagnostics_(diagnostics) {}
 
-  Options read(const TomlNode& table, std::span<const OptionSpec> specs, std::span<const std::string> reserved) {
+  Options read(const TomlNode& table, std::span<const OptionSpec> specs,
+               std::span<const std::string> reserved) {
     unknown_keys(table, specs, reserved);
     Options options;
     for (const OptionSpec& spec : specs) {
@@ -49,7 +54,8 @@ class Reader {
       } else if (spec.fallback) {
         options.set(spec.key, *spec.fallback);
       } else if (!spec.optional && !unit_mistakes_.contains(spec.key)) {
-        error("missing-option", fmt::format("{} needs the option `{}`", owner_, spec.key), table.where, spec.doc);
+        error("missing-option", fmt::format("{} needs the option `{}`", owner_, spec.key), table.where,
+              spec.doc);
       }
     }
     return options;
@@ -60,7 +66,8 @@ class Reader {
     diagnostics_.push_back({Severity::error, code, std::move(message), where, std::move(help)});
   }
 
-  void unknown_keys(const TomlNode& table, std::span<const OptionSpec> specs, std::span<const std::string> reserved) {
+  void unknown_keys(const TomlNode& table, std::span<const OptionSpec> specs,
+                    std::span<const std::string> reserved) {
     std::vector<std::string> known;
     for (const OptionSpec& spec : specs) known.push_back(spec.key);
     for (const auto& [key, value] : table.members) {
@@ -71,8 +78,10 @@ class Reader {
       });
       if (same_stem != specs.end()) {
         unit_mistakes_.insert(same_stem->key);
-        error("wrong-unit", fmt::format("`{}` is not an option of {}: it is given in {}", key, owner_, same_stem->unit),
-              value.key_where, fmt::format("write `{}`, with the value in {}", same_stem->key, same_stem->unit));
+        error("wrong-unit",
+              fmt::format("`{}` is not an option of {}: it is given in {}", key, owner_, same_stem->unit),
+              value.key_where,
+              fmt::format("write `{}`, with the value in {}", same_stem->key, same_stem->unit));
       } else {
         std::vector<std::string> candidates = known;
         candidates.insert(candidates.end(), reserved.begin(), reserved.end());
@@ -83,7 +92,9 @@ class Reader {
   }
 
   void wrong_type(const OptionSpec& spec, const TomlNode& node) {
-    error("wrong-type", fmt::format("`{}` of {} must be {}, not {}", spec.key, owner_, with_article(spec.type), io::describe(node.kind)),
+    error("wrong-type",
+          fmt::format("`{}` of {} must be {}, not {}", spec.key, owner_, with_article(spec.type),
+                      io::describe(node.kind)),
           node.where);
   }
 
@@ -92,15 +103,17 @@ class Reader {
     const bool high = spec.upper && (spec.upper_open ? !(value < *spec.upper) : !(value <= *spec.upper));
     if (std::isfinite(value) && !low && !high) return true;
     const std::string range = range_text(spec);
-    error("out-of-range", fmt::format("`{}` = {:g} of {} is out of range", spec.key, value, owner_), node.where,
-          range.empty() ? "it must be a finite number" : "allowed: " + range);
+    error("out-of-range", fmt::format("`{}` = {:g} of {} is out of range", spec.key, value, owner_),
+          node.where, range.empty() ? "it must be a finite number" : "allowed: " + range);
     return false;
   }
 
   bool is_allowed(const OptionSpec& spec, const std::string& value, const TomlNode& node) {
-    if (spec.allowed.empty() || std::find(spec.allowed.begin(), spec.allowed.end(), value) != spec.allowed.end()) return true;
-    error("unknown-value", fmt::format("`{}` is not a value of `{}` of {}", value, spec.key, owner_), node.where,
-          data::suggest(value, spec.allowed));
+    if (spec.allowed.empty() ||
+        std::find(spec.allowed.begin(), spec.allowed.end(), value) != spec.allowed.end())
+      return true;
+    error("unknown-value", fmt::format("`{}` is not a value of `{}` of {}", value, spec.key, owner_),
+          node.where, data::suggest(value, spec.allowed));
     return false;
   }
 
@@ -122,9 +135,12 @@ class Reader {
         if (node.kind != TomlNode::Kind::text) break;
         if (!is_allowed(spec, node.text, node)) return std::nullopt;
         return node.text;
-      case OptionType::numbers: return read_list<double>(spec, node);
-      case OptionType::texts: return read_list<std::string>(spec, node);
-      case OptionType::tables: return read_tables(spec, node);
+      case OptionType::numbers:
+        return read_list<double>(spec, node);
+      case OptionType::texts:
+        return read_list<std::string>(spec, node);
+      case OptionType::tables:
+        return read_tables(spec, node);
     }
     wrong_type(spec, node);
     return std::nullopt;
@@ -137,7 +153,8 @@ class Reader {
     bool good = true;
     const auto add = [&](const TomlNode& item) {
       if constexpr (std::is_same_v<T, double>) {
-        if (item.kind != TomlNode::Kind::number && item.kind != TomlNode::Kind::integer) return wrong_type(spec, item), false;
+        if (item.kind != TomlNode::Kind::number && item.kind != TomlNode::Kind::integer)
+          return wrong_type(spec, item), false;
         values.push_back(item.number);
         return in_range(spec, item.number, item);
       } else {
@@ -157,14 +174,16 @@ class Reader {
 
   std::optional<OptionValue> read_tables(const OptionSpec& spec, const TomlNode& node) {
     const bool list = node.kind == TomlNode::Kind::array &&
-                      std::all_of(node.items.begin(), node.items.end(), [](const TomlNode& n) { return n.kind == TomlNode::Kind::table; });
+                      std::all_of(node.items.begin(), node.items.end(),
+                                  [](const TomlNode& n) { return n.kind == TomlNode::Kind::table; });
     if (!list) {
       wrong_type(spec, node);
       return std::nullopt;
     }
     std::vector<Options> values;
     const std::string owner = fmt::format("`{}` of {}", spec.key, owner_);
-    for (const TomlNode& item : node.items) values.push_back(Reader(owner, diagnostics_).read(item, spec.fields, {}));
+    for (const TomlNode& item : node.items)
+      values.push_back(Reader(owner, diagnostics_).read(item, spec.fields, {}));
     return OptionValue(std::move(values));
   }
 
@@ -200,7 +219,8 @@ TomlNode value_tree(const OptionValue& value, const OptionSpec* spec) {
 template <class T>
 const T& get(const Options& options, const std::string& key) {
   const auto found = options.values().find(key);
-  if (found == options.values().end()) throw std::logic_error(fmt::format("the specification has no option `{}` with a value", key));
+  if (found == options.values().end())
+    throw std::logic_error(fmt::format("the specification has no option `{}` with a value", key));
   const T* value = std::get_if<T>(&found->second);
   if (!value) throw std::logic_error(fmt::format("option `{}` is read as another type than specified", key));
   return *value;
@@ -208,15 +228,27 @@ const T& get(const Options& options, const std::string& key) {
 
 }  // namespace
 
-double Options::number(const std::string& key) const { return get<double>(*this, key); }
-std::int64_t Options::integer(const std::string& key) const { return get<std::int64_t>(*this, key); }
-bool Options::boolean(const std::string& key) const { return get<bool>(*this, key); }
-const std::string& Options::text(const std::string& key) const { return get<std::string>(*this, key); }
-const std::vector<double>& Options::numbers(const std::string& key) const { return get<std::vector<double>>(*this, key); }
+double Options::number(const std::string& key) const {
+  return get<double>(*this, key);
+}
+std::int64_t Options::integer(const std::string& key) const {
+  return get<std::int64_t>(*this, key);
+}
+bool Options::boolean(const std::string& key) const {
+  return get<bool>(*this, key);
+}
+const std::string& Options::text(const std::string& key) const {
+  return get<std::string>(*this, key);
+}
+const std::vector<double>& Options::numbers(const std::string& key) const {
+  return get<std::vector<double>>(*this, key);
+}
 const std::vector<std::string>& Options::texts(const std::string& key) const {
   return get<std::vector<std::string>>(*this, key);
 }
-const std::vector<Options>& Options::tables(const std::string& key) const { return get<std::vector<Options>>(*this, key); }
+const std::vector<Options>& Options::tables(const std::string& key) const {
+  return get<std::vector<Options>>(*this, key);
+}
 
 std::optional<double> Options::maybe_number(const std::string& key) const {
   return has(key) ? std::optional(number(key)) : std::nullopt;
@@ -233,7 +265,8 @@ Options parse_options(const TomlNode& table, std::span<const OptionSpec> specs, 
 
 Options options_from_text(const std::string& toml, const StageSpec& stage) {
   std::vector<Diagnostic> diagnostics;
-  Options options = parse_options(io::parse_toml(toml, "options"), stage.options, fmt::format("stage `{}`", stage.name), {}, diagnostics);
+  Options options = parse_options(io::parse_toml(toml, "options"), stage.options,
+                                  fmt::format("stage `{}`", stage.name), {}, diagnostics);
   io::raise_if_errors(diagnostics);
   return options;
 }
@@ -254,7 +287,8 @@ std::string value_text(const OptionValue& value) {
 std::string node_text(const TomlNode& value) {
   if (value.kind == TomlNode::Kind::table) {
     std::string out = "{";
-    for (const auto& [key, member] : value.members) out += (out.size() > 1 ? ", " : " ") + key + " = " + node_text(member);
+    for (const auto& [key, member] : value.members)
+      out += (out.size() > 1 ? ", " : " ") + key + " = " + node_text(member);
     return out + " }";
   }
   if (value.kind == TomlNode::Kind::array) {
@@ -274,20 +308,30 @@ std::string range_text(const OptionSpec& spec) {
     return fmt::format("{}{} to {}{}{}", spec.lower_open ? "more than " : "", bound_text(*spec.lower),
                        spec.upper_open ? "less than " : "", bound_text(*spec.upper), unit);
   }
-  if (spec.lower) return fmt::format("{} {}{}", spec.lower_open ? "greater than" : "at least", bound_text(*spec.lower), unit);
-  if (spec.upper) return fmt::format("{} {}{}", spec.upper_open ? "less than" : "at most", bound_text(*spec.upper), unit);
+  if (spec.lower)
+    return fmt::format("{} {}{}", spec.lower_open ? "greater than" : "at least", bound_text(*spec.lower),
+                       unit);
+  if (spec.upper)
+    return fmt::format("{} {}{}", spec.upper_open ? "less than" : "at most", bound_text(*spec.upper), unit);
   return {};
 }
 
 std::string to_string(OptionType type) {
   switch (type) {
-    case OptionType::number: return "number";
-    case OptionType::integer: return "whole number";
-    case OptionType::boolean: return "true or false";
-    case OptionType::text: return "text";
-    case OptionType::numbers: return "list of numbers";
-    case OptionType::texts: return "list of texts";
-    case OptionType::tables: return "list of tables";
+    case OptionType::number:
+      return "number";
+    case OptionType::integer:
+      return "whole number";
+    case OptionType::boolean:
+      return "true or false";
+    case OptionType::text:
+      return "text";
+    case OptionType::numbers:
+      return "list of numbers";
+    case OptionType::texts:
+      return "list of texts";
+    case OptionType::tables:
+      return "list of tables";
   }
   return "value";
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// Options of a stage, from a TOML table and the stage's specification. Every mistake is collected with its place.
+/// Options of a stage, from a TOML table and the stage's specification. Every mistake is collected with its
+/// place.
 
 #include <span>
 #include <string>
@@ -10,9 +11,9 @@
 
 namespace brachium::pipelines {
 
-/// Reads the options in `table`. `owner` names it in messages ("stage `excitation` (emg.envelope)"). Keys in `reserved`
-/// belong to the pipeline and are left alone. Options that are absent get their defaults.
-/// Mistakes go to `diagnostics`: unknown-key, wrong-unit, wrong-type, out-of-range, unknown-value, missing-option.
+/// Reads the options in `table`. `owner` names it in messages ("stage `excitation` (emg.envelope)"). Keys in
+/// `reserved` belong to the pipeline and are left alone. Options that are absent get their defaults. Mistakes
+/// go to `diagnostics`: unknown-key, wrong-unit, wrong-type, out-of-range, unknown-value, missing-option.
 Options parse_options(const io::TomlNode& table, std::span<const OptionSpec> specs, const std::string& owner,
                       std::span<const std::string> reserved, std::vector<data::Diagnostic>& diagnostics);
 

@@ -9,11 +9,14 @@
 namespace brachium::pipelines {
 namespace {
 
-double seconds(std::chrono::steady_clock::duration time) { return std::chrono::duration<double>(time).count(); }
+double seconds(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration<double>(time).count();
+}
 
 }  // namespace
 
-ProgressPrinter::ProgressPrinter(std::ostream& out, bool terminal, bool quiet) : out_(out), terminal_(terminal), quiet_(quiet) {}
+ProgressPrinter::ProgressPrinter(std::ostream& out, bool terminal, bool quiet)
+    : out_(out), terminal_(terminal), quiet_(quiet) {}
 
 void ProgressPrinter::clear() {
   if (line_open_) out_ << "\r\x1b[K";
@@ -24,18 +27,21 @@ void ProgressPrinter::stage_begins(const StageRecord& stage, std::size_t place, 
   begin_ = shown_ = Clock::now();
   if (quiet_) return;
   clear();
-  out_ << fmt::format("[{}/{}] {} ({}): {}\n", place, count, stage.name, stage.run, stage.reason) << std::flush;
+  out_ << fmt::format("[{}/{}] {} ({}): {}\n", place, count, stage.name, stage.run, stage.reason)
+       << std::flush;
 }
 
 void ProgressPrinter::stage_progress(const StageRecord& stage, double fraction, const std::string& what) {
   const auto now = Clock::now();
   const double elapsed = seconds(now - begin_);
-  // Nothing for what takes less than a second; then often where the line is written over, seldom where it stays.
+  // Nothing for what takes less than a second; then often where the line is written over, seldom where it
+  // stays.
   if (quiet_ || elapsed < 1.0 || seconds(now - shown_) < (terminal_ ? 0.1 : 10.0)) return;
   shown_ = now;
   const double done = std::clamp(fraction, 0.0, 1.0);
   const std::string left = done > 0.01 ? report::duration(elapsed / done * (1.0 - done)) + " left" : "";
-  const std::string line = fmt::format("  {}  {:3.0f} %  {}{}{}", stage.name, 100.0 * done, left, what.empty() ? "" : "  ", what);
+  const std::string line =
+      fmt::format("  {}  {:3.0f} %  {}{}{}", stage.name, 100.0 * done, left, what.empty() ? "" : "  ", what);
   if (terminal_) {
     out_ << "\r\x1b[K" << line << std::flush;
     line_open_ = true;
@@ -47,12 +53,15 @@ void ProgressPrinter::stage_progress(const StageRecord& stage, double fraction, 
 void ProgressPrinter::stage_ends(const StageRecord& stage, const std::vector<data::Diagnostic>& findings) {
   clear();
   if (!quiet_) {
-    if (stage.status == StageStatus::done) out_ << fmt::format("  {} done in {}\n", stage.name, report::duration(stage.seconds));
-    if (stage.status == StageStatus::reused) out_ << fmt::format("  {} reused: {}\n", stage.name, stage.reason);
+    if (stage.status == StageStatus::done)
+      out_ << fmt::format("  {} done in {}\n", stage.name, report::duration(stage.seconds));
+    if (stage.status == StageStatus::reused)
+      out_ << fmt::format("  {} reused: {}\n", stage.name, stage.reason);
   }
   if (stage.status != StageStatus::failed) {  // what ended the run is told at its end
     for (const data::Diagnostic& d : findings) {
-      if (d.severity != data::Severity::note && (!quiet_ || d.severity == data::Severity::error)) out_ << data::render(d);
+      if (d.severity != data::Severity::note && (!quiet_ || d.severity == data::Severity::error))
+        out_ << data::render(d);
     }
   }
   out_ << std::flush;

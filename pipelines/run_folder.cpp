@@ -35,28 +35,39 @@ RunFolder::RunFolder(const fs::path& folder) : path_(fs::absolute(folder).lexica
   std::error_code failed;
   fs::create_directories(path_, failed);
   if (failed || !fs::is_directory(path_)) {
-    throw InputError("cannot-write", fmt::format("cannot make the run folder `{}`: {}", path_.string(), failed ? failed.message() : "a file is in its place"),
+    throw InputError("cannot-write",
+                     fmt::format("cannot make the run folder `{}`: {}", path_.string(),
+                                 failed ? failed.message() : "a file is in its place"),
                      "choose another with --out");
   }
   lock_ = ::open((path_ / ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) {
-    throw InputError("cannot-write", fmt::format("cannot write to the run folder `{}`: {}", path_.string(), std::strerror(errno)),
-                     "choose another with --out");
+    throw InputError(
+        "cannot-write",
+        fmt::format("cannot write to the run folder `{}`: {}", path_.string(), std::strerror(errno)),
+        "choose another with --out");
   }
   const std::string holder = content_of(lock_);
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     ::close(lock_);
     lock_ = -1;
-    throw InputError("run-in-progress", fmt::format("process {} is running in `{}`", holder.empty() ? "(unknown)" : holder, path_.string()),
-                     "wait for it, or choose another folder with --out");
+    throw InputError(
+        "run-in-progress",
+        fmt::format("process {} is running in `{}`", holder.empty() ? "(unknown)" : holder, path_.string()),
+        "wait for it, or choose another folder with --out");
   }
-  if (!holder.empty()) left_behind_ = fmt::format("the run of process {} in this folder was killed; going on where it stopped", holder);
+  if (!holder.empty())
+    left_behind_ =
+        fmt::format("the run of process {} in this folder was killed; going on where it stopped", holder);
   const std::string own = std::to_string(::getpid()) + "\n";
-  if (::ftruncate(lock_, 0) != 0 || ::pwrite(lock_, own.data(), own.size(), 0) != static_cast<ssize_t>(own.size())) {
+  if (::ftruncate(lock_, 0) != 0 ||
+      ::pwrite(lock_, own.data(), own.size(), 0) != static_cast<ssize_t>(own.size())) {
     const int error = errno;
     ::close(lock_);
-    throw InputError("cannot-write", fmt::format("cannot write to the run folder `{}`: {}", path_.string(), std::strerror(error)),
-                     "free some space, or choose another with --out");
+    throw InputError(
+        "cannot-write",
+        fmt::format("cannot write to the run folder `{}`: {}", path_.string(), std::strerror(error)),
+        "free some space, or choose another with --out");
   }
 }
 
@@ -74,7 +85,9 @@ void RunFolder::tidy(const Definition& definition) const {
     std::error_code ignored;
     if (name.starts_with(".") && name.find(".partial-") != std::string::npos) fs::remove(file, ignored);
     const std::size_t dash = name.find('-');
-    if (dash == std::string::npos || file.extension() != ".h5" || name.find_first_not_of("0123456789") != dash) continue;
+    if (dash == std::string::npos || file.extension() != ".h5" ||
+        name.find_first_not_of("0123456789") != dash)
+      continue;
     const StageDefinition* stage = definition.find(name.substr(dash + 1, name.size() - dash - 4));
     if (!stage) continue;
     const fs::path wanted = output_file(path_, stage->number, stage->name);
@@ -86,7 +99,9 @@ fs::path output_file(const fs::path& folder, std::size_t number, const std::stri
   return folder / fmt::format("{:02}-{}.h5", number, stage);
 }
 
-fs::path subject_file(const fs::path& folder, const std::string& stage) { return folder / (stage + ".subject.toml"); }
+fs::path subject_file(const fs::path& folder, const std::string& stage) {
+  return folder / (stage + ".subject.toml");
+}
 
 StageData load_stage(const fs::path& file, const std::string& stage) {
   io::StageFileContent content = io::read_stage_content(file);

@@ -10,11 +10,12 @@
 
 namespace brachium::pipelines {
 
-/// A folder held by one run. The lock ends with the process however it ends, so a killed run leaves none behind.
+/// A folder held by one run. The lock ends with the process however it ends, so a killed run leaves none
+/// behind.
 class RunFolder {
  public:
-  /// Makes the folder if need be and locks it. Throws InputError("cannot-write") and ("run-in-progress") with the
-  /// process that holds it.
+  /// Makes the folder if need be and locks it. Throws InputError("cannot-write") and ("run-in-progress") with
+  /// the process that holds it.
   explicit RunFolder(const std::filesystem::path& folder);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -35,7 +36,8 @@ class RunFolder {
 };
 
 /// "<folder>/03-excitation.h5"; number 0 is the imported session.
-std::filesystem::path output_file(const std::filesystem::path& folder, std::size_t number, const std::string& stage);
+std::filesystem::path output_file(const std::filesystem::path& folder, std::size_t number,
+                                  const std::string& stage);
 std::filesystem::path subject_file(const std::filesystem::path& folder, const std::string& stage);
 
 /// A stage's stored output as later stages see it; signals are read when asked for. Throws InputError.

@@ -17,7 +17,9 @@ namespace {
 using nlohmann::json;
 
 json to_json(const data::Diagnostic& d) {
-  const char* severity = d.severity == data::Severity::error ? "error" : d.severity == data::Severity::warning ? "warning" : "note";
+  const char* severity = d.severity == data::Severity::error     ? "error"
+                         : d.severity == data::Severity::warning ? "warning"
+                                                                 : "note";
   json out{{"severity", severity}, {"code", d.code}, {"message", d.message}};
   if (!d.help.empty()) out["help"] = d.help;
   if (d.where) out["where"] = {{"file", d.where->file}, {"line", d.where->line}, {"column", d.where->column}};
@@ -25,21 +27,36 @@ json to_json(const data::Diagnostic& d) {
 }
 
 json to_json(const StageRecord& s) {
-  json out{{"name", s.name},   {"run", s.run},         {"status", to_string(s.status)}, {"reason", s.reason}, {"seconds", s.seconds},
-           {"started", s.started}, {"ended", s.ended}, {"output", s.output.filename().string()}, {"reads", s.reads}};
+  json out{{"name", s.name},
+           {"run", s.run},
+           {"status", to_string(s.status)},
+           {"reason", s.reason},
+           {"seconds", s.seconds},
+           {"started", s.started},
+           {"ended", s.ended},
+           {"output", s.output.filename().string()},
+           {"reads", s.reads}};
+  out["findings"] = json::array();
+  for (const data::Diagnostic& d : s.findings) out["findings"].push_back(to_json(d));
   out["fingerprint"] = s.fingerprint.empty() ? json() : json(digest(s.fingerprint));
   return out;
 }
 
 json to_json(const ExpectationResult& r) {
-  json out{{"name", r.expectation->name}, {"place", place_text(*r.expectation)}, {"wanted", wanted_text(*r.expectation)}, {"checked", r.checked}, {"passed", r.passed}};
+  json out{{"name", r.expectation->name},
+           {"place", place_text(*r.expectation)},
+           {"wanted", wanted_text(*r.expectation)},
+           {"checked", r.checked},
+           {"passed", r.passed}};
   // JSON has no NaN: a number that is none is told by its text.
   if (r.found) out["found"] = std::isfinite(*r.found) ? json(*r.found) : json(fmt::format("{}", *r.found));
   if (!r.remark.empty()) out["remark"] = r.remark;
   return out;
 }
 
-std::string dump(const json& value) { return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n"; }
+std::string dump(const json& value) {
+  return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
 
 StageStatus parse_status(const std::string& text) {
   for (const StageStatus status : {StageStatus::done, StageStatus::reused, StageStatus::failed}) {
@@ -72,7 +89,9 @@ json provenance_json(const RunResult& result) {
   const Definition& definition = *result.definition;
   utsname system{};
   json out{{"program", "brachium"}, {"version", program_version()}, {"built_with", build_versions()}};
-  if (::uname(&system) == 0) out["machine"] = {{"system", fmt::format("{} {}", system.sysname, system.release)}, {"architecture", system.machine}};
+  if (::uname(&system) == 0)
+    out["machine"] = {{"system", fmt::format("{} {}", system.sysname, system.release)},
+                      {"architecture", system.machine}};
   out["machine"]["cores"] = std::thread::hardware_concurrency();
   out["command_line"] = result.command_line;
   out["settings"] = definition.settings;
@@ -98,11 +117,13 @@ void write_records(const RunResult& result) {
 std::vector<StageRecord> read_stage_records(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(folder / "result.json", ignored)) {
-    throw data::InputError("not-a-run", fmt::format("`{}` is not a run folder: it has no result.json", folder.string()));
+    throw data::InputError("not-a-run",
+                           fmt::format("`{}` is not a run folder: it has no result.json", folder.string()));
   }
   std::vector<StageRecord> records;
   try {
-    for (const json& s : json::parse(io::read_text(folder / "result.json")).at("stages")) {
+    const json result = json::parse(io::read_text(folder / "result.json"));
+    for (const json& s : result.at("stages")) {
       StageRecord record;
       record.name = s.at("name");
       record.run = s.at("run");
@@ -116,7 +137,8 @@ std::vector<StageRecord> read_stage_records(const std::filesystem::path& folder)
       records.push_back(std::move(record));
     }
   } catch (const json::exception& damage) {
-    throw data::InputError("not-a-run", fmt::format("`{}` cannot be read: {}", (folder / "result.json").string(), damage.what()));
+    throw data::InputError("not-a-run", fmt::format("`{}` cannot be read: {}",
+                                                    (folder / "result.json").string(), damage.what()));
   }
   return records;
 }

@@ -6,13 +6,15 @@
 
 namespace brachium::pipelines {
 
-std::vector<std::string> select_trials(const StageSpec& spec, const std::map<std::string, std::vector<const StageData*>>& inputs,
+std::vector<std::string> select_trials(const StageSpec& spec,
+                                       const std::map<std::string, std::vector<const StageData*>>& inputs,
                                        const std::vector<std::string>& patterns) {
   for (const InputSpec& port : spec.inputs) {
     const auto wired = inputs.find(port.name);
     if (port.type != PortType::signals || wired == inputs.end() || wired->second.empty()) continue;
     std::vector<std::string> names;
-    for (const data::TrialInfo& trial : wired->second.front()->signals->info().trials) names.push_back(trial.name);
+    for (const data::TrialInfo& trial : wired->second.front()->signals->info().trials)
+      names.push_back(trial.name);
     if (patterns.empty()) return names;
     return data::match_names(patterns, names, fmt::format("trial of `{}`", wired->second.front()->stage));
   }
@@ -24,7 +26,8 @@ StageData run_stage(const StageSpec& spec, const StageRequest& request) {
   for (const InputSpec& port : spec.inputs) {
     const auto wired = request.inputs.find(port.name);
     if (!port.optional && (wired == request.inputs.end() || wired->second.empty())) {
-      throw data::InputError("missing-input", fmt::format("stage `{}` needs the input `{}`", spec.name, port.name), port.doc);
+      throw data::InputError("missing-input",
+                             fmt::format("stage `{}` needs the input `{}`", spec.name, port.name), port.doc);
     }
   }
   StageContext context;
@@ -40,7 +43,11 @@ StageData run_stage(const StageSpec& spec, const StageRequest& request) {
   StageOutput output;
   output.signals = signals.get();
   spec.run(context, output);
-  return {spec.name, signals, std::move(output.tables), std::move(output.subject), std::move(output.attributes),
+  return {spec.name,
+          signals,
+          std::move(output.tables),
+          std::move(output.subject),
+          std::move(output.attributes),
           std::move(output.diagnostics)};
 }
 

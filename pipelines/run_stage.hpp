@@ -23,9 +23,11 @@ StageData run_stage(const StageSpec& spec, const StageRequest& request);
 /// A session as a stage's input, named "session".
 StageData session_data(data::Session session);
 
-/// Names of the trials to work on: those of the first wired signals input that match the patterns (all if there are
-/// none), in that input's order. Empty where no signals input is wired. Throws InputError("no-match").
-std::vector<std::string> select_trials(const StageSpec& spec, const std::map<std::string, std::vector<const StageData*>>& inputs,
+/// Names of the trials to work on: those of the first wired signals input that match the patterns (all if
+/// there are none), in that input's order. Empty where no signals input is wired. Throws
+/// InputError("no-match").
+std::vector<std::string> select_trials(const StageSpec& spec,
+                                       const std::map<std::string, std::vector<const StageData*>>& inputs,
                                        const std::vector<std::string>& patterns);
 
 }  // namespace brachium::pipelines

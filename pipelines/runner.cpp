@@ -13,6 +13,7 @@
 #include "data/model/parallel.hpp"
 #include "pipelines/assemble_report.hpp"
 #include "pipelines/exports.hpp"
+#include "pipelines/guarded_sink.hpp"
 #include "pipelines/report/html.hpp"
 #include "pipelines/run_folder.hpp"
 #include "pipelines/run_log.hpp"
@@ -30,39 +31,12 @@ using data::Diagnostic;
 using data::InputError;
 using data::Severity;
 
-/// A stage's output on its way to the disk; ends the stage when the run is to stop.
-class GuardedSink final : public data::SessionSink {
- public:
-  GuardedSink(data::SessionSink& target, const std::atomic<bool>* stop) : target_(target), stop_(stop) {}
-  void begin(const data::SessionInfo& session) override {
-    begun_ = true;
-    target_.begin(session);
-  }
-  void begin_trial(const data::TrialInfo& trial) override { target_.begin_trial(trial); }
-  void begin_signal(const std::string& trial, const data::SignalInfo& info) override {
-    check();
-    target_.begin_signal(trial, info);
-  }
-  void write_samples(const std::string& trial, const std::string& signal, std::size_t first, std::span<const double> samples) override {
-    check();
-    target_.write_samples(trial, signal, first, samples);
-  }
-  bool begun() const { return begun_; }
-
- private:
-  void check() const {
-    if (stop_ && *stop_) throw Interrupted();
-  }
-  data::SessionSink& target_;
-  const std::atomic<bool>* stop_;
-  bool begun_ = false;
-};
-
 class Run {
  public:
   Run(const Catalogue& catalogue, const RunRequest& request, RunObserver& observer)
       : request_(request),
-        definition_(std::make_shared<Definition>(read_definition(request.definition, request.settings, catalogue))),
+        definition_(
+            std::make_shared<Definition>(read_definition(request.definition, request.settings, catalogue))),
         folder_(request.out.empty() ? fs::path("runs") / definition_->file.stem() : request.out),
         observer_(folder_.path() / "log.txt", observer),
         digests_(folder_.path() / "digests.json") {
@@ -91,7 +65,8 @@ class Run {
       record.run = stage->spec->name;
       record.output = output_file(folder_.path(), stage->number, stage->name);
       for (const auto& [port, wires] : stage->inputs) {
-        for (const Wire& wire : wires) record.reads.push_back(wire.stage.empty() ? "file:" + wire.file.string() : wire.stage);
+        for (const Wire& wire : wires)
+          record.reads.push_back(wire.stage.empty() ? "file:" + wire.file.string() : wire.stage);
       }
       result_.stages.push_back(std::move(record));
       if (result_.outcome != Outcome::done) {
@@ -108,7 +83,8 @@ class Run {
   // ---------------------------------------------------------------- which stages
 
   void check_stage_choice() const {
-    if (int{request_.only.has_value()} + int{request_.from.has_value()} + int{request_.until.has_value()} > 1) {
+    if (int{request_.only.has_value()} + int{request_.from.has_value()} + int{request_.until.has_value()} >
+        1) {
       throw InputError("bad-setting", "--only, --from and --until exclude each other");
     }
     std::vector<std::string> known;
@@ -116,7 +92,8 @@ class Run {
     if (definition_->session_is_description()) known.push_back(session_stage);
     for (const auto& choice : {request_.only, request_.from, request_.until}) {
       if (choice && std::find(known.begin(), known.end(), *choice) == known.end()) {
-        throw InputError("unknown-stage", fmt::format("the pipeline has no stage `{}`", *choice), data::suggest(*choice, known));
+        throw InputError("unknown-stage", fmt::format("the pipeline has no stage `{}`", *choice),
+                         data::suggest(*choice, known));
       }
     }
   }
@@ -158,7 +135,8 @@ class Run {
 
   void remember_earlier_times() {
     try {
-      for (StageRecord& record : read_stage_records(folder_.path())) earlier_[record.name] = std::move(record);
+      for (StageRecord& record : read_stage_records(folder_.path()))
+        earlier_[record.name] = std::move(record);
     } catch (const InputError&) {
       earlier_.clear();  // a first run, or one that was killed: times of reused stages are then unknown
     }
@@ -173,7 +151,9 @@ class Run {
       return;
     } catch (const Interrupted&) {
       result_.outcome = Outcome::interrupted;
-      result_.errors.push_back({Severity::error, "interrupted", fmt::format("the run was stopped in stage `{}`", stage.name), std::nullopt, "run it again to go on"});
+      result_.errors.push_back({Severity::error, "interrupted",
+                                fmt::format("the run was stopped in stage `{}`", stage.name), std::nullopt,
+                                "run it again to go on"});
     } catch (const InputError& error) {
       result_.outcome = Outcome::input_error;
       result_.errors = error.diagnostics();
@@ -182,11 +162,16 @@ class Run {
       result_.errors.push_back({Severity::error, "no-convergence", failure.what(), std::nullopt, {}});
     } catch (const std::bad_alloc&) {
       result_.outcome = Outcome::numerical_failure;
-      result_.errors.push_back({Severity::error, "out-of-memory", fmt::format("stage `{}` ran out of memory", stage.name), std::nullopt, {}});
+      result_.errors.push_back({Severity::error,
+                                "out-of-memory",
+                                fmt::format("stage `{}` ran out of memory", stage.name),
+                                std::nullopt,
+                                {}});
     } catch (const std::exception& defect) {
       result_.outcome = Outcome::numerical_failure;
-      result_.errors.push_back({Severity::error, "internal-error", fmt::format("stage `{}` broke down: {}", stage.name, defect.what()), std::nullopt,
-                                "this is a defect of the program, not of your input"});
+      result_.errors.push_back({Severity::error, "internal-error",
+                                fmt::format("stage `{}` broke down: {}", stage.name, defect.what()),
+                                std::nullopt, "this is a defect of the program, not of your input"});
     }
     StageRecord& record = result_.stages.back();
     record.status = StageStatus::failed;
@@ -208,7 +193,9 @@ class Run {
         record.reason = "its output is damaged";
       }
     } else {
-      record.reason = !difference.empty() ? difference : request_.only ? "asked for with --only" : "asked for with --from";
+      record.reason = !difference.empty() ? difference
+                      : request_.only     ? "asked for with --only"
+                                          : "asked for with --from";
     }
     if (record.status == StageStatus::reused) {
       if (const auto before = earlier_.find(stage.name); before != earlier_.end()) {
@@ -220,7 +207,8 @@ class Run {
       run(stage, record, place, count);
     }
     write_exports(stage, record, data_.at(stage.name));
-    observer_.stage_ends(record, data_.at(stage.name).diagnostics);
+    record.findings = data_.at(stage.name).diagnostics;
+    observer_.stage_ends(record, record.findings);
   }
 
   /// A stage that was not asked for: its stored output is shown in the report if it stands.
@@ -274,7 +262,8 @@ class Run {
       throw std::logic_error(fmt::format("`{}` gives a subject, but left none", stage.spec->name));
     }
     if (!sink.begun()) writer.begin({});
-    writer.finish({std::move(output.tables), std::move(output.attributes), std::move(output.diagnostics), std::move(output.subject), record.fingerprint});
+    writer.finish({std::move(output.tables), std::move(output.attributes), std::move(output.diagnostics),
+                   std::move(output.subject), record.fingerprint});
     data_[stage.name] = load_stage(record.output, stage.name);
     record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     record.ended = utc_now();
@@ -302,17 +291,22 @@ class Run {
 
   /// "<source> <digest>" of what a wire brings.
   std::string source_text(const Wire& wire) {
-    if (wire.stage.empty()) return fmt::format("file:{} {}", wire.file.filename().string(), digests_.of(wire.file));
+    if (wire.stage.empty())
+      return fmt::format("file:{} {}", wire.file.filename().string(), digests_.of(wire.file));
     if (is_session_file(wire.stage)) {
-      return fmt::format("recordings:{} {}", definition_->session.filename().string(), digests_.of(definition_->session));
+      return fmt::format("recordings:{} {}", definition_->session.filename().string(),
+                         digests_.of(definition_->session));
     }
-    if (const StageRecord* record = result_.find(wire.stage); record && (record->status == StageStatus::done || record->status == StageStatus::reused)) {
+    if (const StageRecord* record = result_.find(wire.stage);
+        record && (record->status == StageStatus::done || record->status == StageStatus::reused)) {
       return fmt::format("{} {}", wire.stage, digest(record->fingerprint));
     }
     const auto stored = io::read_fingerprint(stored_output(wire.stage));
     if (!stored) {
-      throw InputError("no-stored-output", fmt::format("stage `{}` has no stored output in `{}`", wire.stage, folder_.path().string()),
-                       fmt::format("run it first: --until {}", wire.stage));
+      throw InputError(
+          "no-stored-output",
+          fmt::format("stage `{}` has no stored output in `{}`", wire.stage, folder_.path().string()),
+          fmt::format("run it first: --until {}", wire.stage));
     }
     return fmt::format("{} {}", wire.stage, digest(*stored));
   }
@@ -323,7 +317,8 @@ class Run {
     parts["program"] = program_version();
     if (!scene_digest_.empty()) parts["scene"] = scene_digest_;
     for (const auto& [port, wires] : stage.inputs) {
-      for (std::size_t i = 0; i < wires.size(); ++i) parts[fmt::format("input.{}.{}", port, i)] = source_text(wires[i]);
+      for (std::size_t i = 0; i < wires.size(); ++i)
+        parts[fmt::format("input.{}.{}", port, i)] = source_text(wires[i]);
     }
     return parts;
   }
@@ -342,27 +337,48 @@ class Run {
     for (const Expectation& expectation : definition_->expectations) {
       const auto found = data_.find(expectation.stage);
       const StageRecord* record = result_.find(expectation.stage);
-      const bool ran = record && (record->status == StageStatus::done || record->status == StageStatus::reused);
-      result_.expectations.push_back(check_expectation(expectation, ran && found != data_.end() ? &found->second : nullptr));
+      const bool ran =
+          record && (record->status == StageStatus::done || record->status == StageStatus::reused);
+      result_.expectations.push_back(
+          check_expectation(expectation, ran && found != data_.end() ? &found->second : nullptr));
       const ExpectationResult& last = result_.expectations.back();
-      if (last.checked && !last.passed && result_.outcome == Outcome::done) result_.outcome = Outcome::expectation_failed;
+      if (last.checked && !last.passed && result_.outcome == Outcome::done)
+        result_.outcome = Outcome::expectation_failed;
     }
     result_.files = digests_.used();
     result_.ended = utc_now();
     result_.verdict = verdict_of(result_, data_);
-    try {
+    saving([&] {
       for (const StageDefinition& stage : definition_->stages) {
         if (!data_.contains(stage.name)) continue;
         for (const auto& [port, wires] : stage.inputs) {
-          for (const Wire& wire : wires) input(wire);  // chapters draw what a stage read, also where it was reused
+          for (const Wire& wire : wires)
+            input(wire);  // chapters draw what a stage read, also where it was reused
         }
       }
-      digests_.save();
-      io::write_text_atomically(folder_.path() / "report.html", report::render_html(assemble_report(result_, data_)));
-      write_records(result_);
+      io::write_text_atomically(folder_.path() / "report.html",
+                                report::render_html(assemble_report(result_, data_)));
+    });
+    saving([&] { digests_.save(); });
+    saving([&] { write_records(result_); });
+  }
+
+  /// Writes a part of what a run leaves; a failure changes the outcome, but the other parts are written all
+  /// the same.
+  template <class F>
+  void saving(F write) {
+    const bool good = result_.outcome == Outcome::done || result_.outcome == Outcome::expectation_failed;
+    try {
+      write();
     } catch (const InputError& error) {
       for (const Diagnostic& d : error.diagnostics()) result_.errors.push_back(d);
-      if (result_.outcome == Outcome::done || result_.outcome == Outcome::expectation_failed) result_.outcome = Outcome::input_error;
+      if (good) result_.outcome = Outcome::input_error;
+    } catch (const std::exception& defect) {
+      result_.errors.push_back({Severity::error, "internal-error",
+                                fmt::format("the report could not be written: {}", defect.what()),
+                                std::nullopt,
+                                "this is a defect of the program; the outputs of the stages are whole"});
+      if (good) result_.outcome = Outcome::numerical_failure;
     }
   }
 
@@ -381,45 +397,6 @@ class Run {
 };
 
 }  // namespace
-
-std::string to_string(StageStatus status) {
-  switch (status) {
-    case StageStatus::done: return "done";
-    case StageStatus::reused: return "reused";
-    case StageStatus::failed: return "failed";
-    case StageStatus::skipped: return "skipped";
-  }
-  return "skipped";
-}
-
-int exit_code(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::done: return 0;
-    case Outcome::expectation_failed:
-    case Outcome::numerical_failure: return 1;
-    case Outcome::input_error: return 2;
-    case Outcome::interrupted: return 130;
-  }
-  return 1;
-}
-
-std::string to_string(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::done: return "done";
-    case Outcome::expectation_failed: return "expectation failed";
-    case Outcome::numerical_failure: return "numerical failure";
-    case Outcome::input_error: return "input error";
-    case Outcome::interrupted: return "interrupted";
-  }
-  return "done";
-}
-
-const StageRecord* RunResult::find(const std::string& stage) const {
-  for (const StageRecord& record : stages) {
-    if (record.name == stage) return &record;
-  }
-  return nullptr;
-}
 
 RunResult run_pipeline(const Catalogue& catalogue, const RunRequest& request, RunObserver& observer) {
   return Run(catalogue, request, observer).execute();

@@ -7,7 +7,8 @@
 namespace brachium::pipelines {
 
 Fingerprint SessionImport::fingerprint(FileDigests& digests) const {
-  Fingerprint parts{{"stage", fmt::format("{} (version {})", spec->name, spec->version)}, {"program", program_version()}};
+  Fingerprint parts{{"stage", fmt::format("{} (version {})", spec->name, spec->version)},
+                    {"program", program_version()}};
   for (const auto& [key, value] : overrides) parts["option." + key] = value;
   parts["file." + description->file.filename().string()] = digests.of(description->file);
   for (const io::ResolvedFile& file : io::resolve_files(*description)) {
@@ -19,7 +20,8 @@ Fingerprint SessionImport::fingerprint(FileDigests& digests) const {
 SessionImport make_session_import(const Definition& definition) {
   SessionImport import;
   import.overrides = definition.session_overrides;
-  import.description = std::make_shared<io::SessionDescription>(io::read_session_description(definition.session, import.overrides));
+  import.description = std::make_shared<io::SessionDescription>(
+      io::read_session_description(definition.session, import.overrides));
   auto spec = std::make_shared<StageSpec>();
   spec->name = "session.import";
   spec->summary = "reads the recordings that a session description names";

@@ -1,6 +1,6 @@
 #pragma once
-/// The stage `session` that comes before all others where a pipeline names a session description: it imports the
-/// recordings once into a session file of the run folder.
+/// The stage `session` that comes before all others where a pipeline names a session description: it imports
+/// the recordings once into a session file of the run folder.
 
 #include <memory>
 

@@ -51,7 +51,8 @@ TomlNode* expectation_named(TomlNode* list, const std::string& name) {
   std::size_t place = 0;
   const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), place);
   const bool is_place = status == std::errc() && end == name.data() + name.size();
-  if (!is_place || !list || list->kind != TomlNode::Kind::array || place < 1 || place > list->items.size()) return nullptr;
+  if (!is_place || !list || list->kind != TomlNode::Kind::array || place < 1 || place > list->items.size())
+    return nullptr;
   return &list->items[place - 1];
 }
 
@@ -63,7 +64,8 @@ void assign(TomlNode& table, std::span<const std::string> path, TomlNode value) 
 
 class Applier {
  public:
-  Applier(TomlNode& root, const fs::path& folder, const fs::path& current, std::vector<Diagnostic>& diagnostics)
+  Applier(TomlNode& root, const fs::path& folder, const fs::path& current,
+          std::vector<Diagnostic>& diagnostics)
       : root_(root), folder_(folder), current_(current), diagnostics_(diagnostics) {
     applied_.variables = TomlNode::table();
     read_variables();
@@ -73,7 +75,8 @@ class Applier {
     const std::size_t equals = setting.find('=');
     const data::SourceSpan where{"--set " + setting, 0, 0, 1, {}};
     if (equals == std::string::npos || equals == 0) {
-      diagnostics_.push_back({Severity::error, "bad-setting", fmt::format("`{}` is not of the form KEY=VALUE", setting), where,
+      diagnostics_.push_back({Severity::error, "bad-setting",
+                              fmt::format("`{}` is not of the form KEY=VALUE", setting), where,
                               "for example --set excitation.lowpass_hz=4"});
       return;
     }
@@ -110,8 +113,10 @@ class Applier {
     for (const std::string& name : plain_) {
       if (used_.contains(name) || (name == recordings && reads_description())) continue;
       const std::vector<std::string> known{"pipeline", "variables", "stage", "expect"};
-      diagnostics_.push_back({Severity::error, "unknown-key", fmt::format("`{}` is not a key of a pipeline definition, nor a variable that a text uses", name),
-                              applied_.variables.find(name)->key_where, data::suggest(name, known)});
+      diagnostics_.push_back(
+          {Severity::error, "unknown-key",
+           fmt::format("`{}` is not a key of a pipeline definition, nor a variable that a text uses", name),
+           applied_.variables.find(name)->key_where, data::suggest(name, known)});
     }
     return std::move(applied_);
   }
@@ -120,7 +125,8 @@ class Applier {
   void read_variables() {
     // Plain values before the first table are variables too.
     for (const auto& [name, node] : root_.members) {
-      const bool tables = node.kind == TomlNode::Kind::array && !node.items.empty() && node.items.front().kind == TomlNode::Kind::table;
+      const bool tables = node.kind == TomlNode::Kind::array && !node.items.empty() &&
+                          node.items.front().kind == TomlNode::Kind::table;
       if (node.kind == TomlNode::Kind::table || tables) continue;
       plain_.push_back(name);
       TomlNode& value = applied_.variables.member(name) = node;
@@ -128,7 +134,9 @@ class Applier {
       value.text = absolute_text(node.text, folder_);
       if (reads_description()) applied_.session_overrides[name] = node_text(value);
     }
-    std::erase_if(root_.members, [&](const auto& m) { return std::find(plain_.begin(), plain_.end(), m.first) != plain_.end(); });
+    std::erase_if(root_.members, [&](const auto& m) {
+      return std::find(plain_.begin(), plain_.end(), m.first) != plain_.end();
+    });
     const TomlNode* table = root_.find("variables");
     if (!table || table->kind != TomlNode::Kind::table) return;
     for (const auto& [name, node] : table->members) {
@@ -143,8 +151,9 @@ class Applier {
       for (const auto& [key, value] : node.members) {
         if (key == "help" || key == "path" || key == "default") continue;
         const std::vector<std::string> known{"help", "path", "default"};
-        diagnostics_.push_back({Severity::error, "unknown-key", fmt::format("`{}` is not a key of variable `{}`", key, name),
-                                value.key_where, data::suggest(key, known)});
+        diagnostics_.push_back({Severity::error, "unknown-key",
+                                fmt::format("`{}` is not a key of variable `{}`", key, name), value.key_where,
+                                data::suggest(key, known)});
       }
       if (is_path) paths_.push_back(name);
       if (fallback) {
@@ -165,7 +174,8 @@ class Applier {
 
   void set_plain(const std::string& key, const TomlNode& value, const std::string& text) {
     if (key == "expect" && value.kind == TomlNode::Kind::boolean) {
-      if (!value.boolean) std::erase_if(root_.members, [](const auto& member) { return member.first == "expect"; });
+      if (!value.boolean)
+        std::erase_if(root_.members, [](const auto& member) { return member.first == "expect"; });
       return;
     }
     TomlNode absolute = value;
@@ -179,7 +189,8 @@ class Applier {
       variable.key_where = key_where;
       unset_.erase(key);
     }
-    // The folder of recordings belongs to the session description, whether or not the pipeline names it as well.
+    // The folder of recordings belongs to the session description, whether or not the pipeline names it as
+    // well.
     if (reads_description() && (key == recordings || !declared)) {
       applied_.session_overrides[key] = key == recordings ? node_text(absolute) : text;
     } else if (!declared) {
@@ -196,9 +207,10 @@ class Applier {
         if (const TomlNode* name = stage.find("name")) known.push_back(name->text);
       }
     }
-    diagnostics_.push_back({Severity::error, "unknown-setting",
-                            fmt::format("`{}` is neither a stage, a variable nor a part of this pipeline", key), where,
-                            data::suggest(key, known)});
+    diagnostics_.push_back(
+        {Severity::error, "unknown-setting",
+         fmt::format("`{}` is neither a stage, a variable nor a part of this pipeline", key), where,
+         data::suggest(key, known)});
   }
 
   void make_file_absolute(TomlNode& node) {
@@ -242,14 +254,16 @@ class Applier {
       if (used_unset_[name]) return nullptr;
       used_unset_[name] = true;
       diagnostics_.push_back({Severity::error, "unset-variable",
-                              fmt::format("variable `{}` has no value{}", name, unset->second.empty() ? "" : ": " + unset->second),
+                              fmt::format("variable `{}` has no value{}", name,
+                                          unset->second.empty() ? "" : ": " + unset->second),
                               where, fmt::format("give it with --set {}=...", name)});
       return nullptr;
     }
     std::vector<std::string> known;
     for (const auto& [key, value] : applied_.variables.members) known.push_back(key);
     for (const auto& [key, help] : unset_) known.push_back(key);
-    diagnostics_.push_back({Severity::error, "unknown-variable", fmt::format("there is no variable `{}`", name), where,
+    diagnostics_.push_back({Severity::error, "unknown-variable",
+                            fmt::format("there is no variable `{}`", name), where,
                             known.empty() ? "name it in [variables]" : data::suggest(name, known)});
     return nullptr;
   }
@@ -258,7 +272,7 @@ class Applier {
   const fs::path folder_, current_;
   std::vector<Diagnostic>& diagnostics_;
   AppliedSettings applied_;
-  std::vector<std::string> plain_;            ///< variables that stand before the first table
+  std::vector<std::string> plain_;  ///< variables that stand before the first table
   std::set<std::string> used_;
   std::map<std::string, std::string> unset_;  ///< variables without a value, and their help
   std::map<std::string, bool> used_unset_;    ///< said once

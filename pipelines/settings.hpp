@@ -19,8 +19,8 @@ struct AppliedSettings {
   std::map<std::string, std::string> session_overrides;  ///< for the session description
 };
 
-/// Applies `settings` to the tree of a definition and replaces ${name} in its texts. Relative paths in settings are
-/// made absolute against `current`, those in [variables] with `path = true` against `folder`.
+/// Applies `settings` to the tree of a definition and replaces ${name} in its texts. Relative paths in
+/// settings are made absolute against `current`, those in [variables] with `path = true` against `folder`.
 /// Mistakes: bad-setting, unknown-setting, unknown-variable, unset-variable.
 AppliedSettings apply_settings(io::TomlNode& root, std::span<const std::string> settings,
                                const std::filesystem::path& folder, const std::filesystem::path& current,

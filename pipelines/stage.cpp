@@ -7,7 +7,8 @@
 namespace brachium::pipelines {
 
 void StageOutput::warn(std::string code, std::string message, std::string help) {
-  diagnostics.push_back({data::Severity::warning, std::move(code), std::move(message), std::nullopt, std::move(help)});
+  diagnostics.push_back(
+      {data::Severity::warning, std::move(code), std::move(message), std::nullopt, std::move(help)});
 }
 
 void StageOutput::note(std::string code, std::string message) {
@@ -16,7 +17,8 @@ void StageOutput::note(std::string code, std::string message) {
 
 const StageData& StageContext::input(const std::string& port) const {
   const StageData* data = maybe_input(port);
-  if (!data) throw std::logic_error(fmt::format("stage `{}` reads its input `{}`, which is not wired", name, port));
+  if (!data)
+    throw std::logic_error(fmt::format("stage `{}` reads its input `{}`, which is not wired", name, port));
   return *data;
 }
 
@@ -27,7 +29,8 @@ const StageData* StageContext::maybe_input(const std::string& port) const {
 
 const data::Scene& StageContext::need_scene() const {
   if (!scene) {
-    throw data::InputError("missing-scene", fmt::format("stage `{}` needs a scene, and the pipeline names none", name),
+    throw data::InputError("missing-scene",
+                           fmt::format("stage `{}` needs a scene, and the pipeline names none", name),
                            "add `scene = \"...\"` to [pipeline]");
   }
   return *scene;

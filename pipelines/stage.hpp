@@ -25,21 +25,21 @@ namespace brachium::pipelines {
 enum class OptionType { number, integer, boolean, text, numbers, texts, tables };
 
 class Options;
-using OptionValue = std::variant<double, std::int64_t, bool, std::string, std::vector<double>, std::vector<std::string>,
-                                 std::vector<Options>>;
+using OptionValue = std::variant<double, std::int64_t, bool, std::string, std::vector<double>,
+                                 std::vector<std::string>, std::vector<Options>>;
 
 /// One option of a stage: everything a user may ask about it.
 struct OptionSpec {
-  std::string key;   ///< with its unit at the end where it has one: "lowpass_hz"
+  std::string key;  ///< with its unit at the end where it has one: "lowpass_hz"
   OptionType type = OptionType::number;
-  std::string unit;  ///< "Hz", "s", ...; empty where it has none
-  std::string doc;   ///< one sentence, with the source where the default has one
+  std::string unit;                     ///< "Hz", "s", ...; empty where it has none
+  std::string doc;                      ///< one sentence, with the source where the default has one
   std::optional<OptionValue> fallback;  ///< default; none: required, unless `optional`
   bool optional = false;                ///< may be absent with no default
   std::optional<double> lower, upper;   ///< inclusive range of a number (every entry of numbers)
   bool lower_open = false, upper_open = false;
-  std::vector<std::string> allowed;     ///< admissible texts; empty: any
-  std::vector<OptionSpec> fields;       ///< of each table, for OptionType::tables
+  std::vector<std::string> allowed;  ///< admissible texts; empty: any
+  std::vector<OptionSpec> fields;    ///< of each table, for OptionType::tables
 };
 
 /// Validated options: every key of the specification that is required or has a default is present.
@@ -74,7 +74,7 @@ struct InputSpec {
   PortType type = PortType::signals;
   std::string doc;
   bool optional = false;
-  bool many = false;             ///< takes a list of stages
+  bool many = false;                 ///< takes a list of stages
   bool defaults_to_session = false;  ///< when not wired, the pipeline's session
 };
 
@@ -84,8 +84,8 @@ struct StageData {
   std::shared_ptr<const data::SessionSource> signals;  ///< never null; may have no trials
   std::map<std::string, data::Table> tables;
   std::optional<data::Subject> subject;
-  std::map<std::string, std::string> attributes;       ///< texts: what was done, assumed, excluded
-  std::vector<data::Diagnostic> diagnostics;           ///< warnings and notes of the run that made it
+  std::map<std::string, std::string> attributes;  ///< texts: what was done, assumed, excluded
+  std::vector<data::Diagnostic> diagnostics;      ///< warnings and notes of the run that made it
 };
 
 /// Where a stage leaves its results. Signals are streamed; the rest is kept until the end of the stage.
@@ -102,12 +102,12 @@ struct StageOutput {
 
 /// What a stage is given.
 struct StageContext {
-  std::string name;                         ///< of this stage in the pipeline
+  std::string name;  ///< of this stage in the pipeline
   const Options* options = nullptr;
   std::map<std::string, std::vector<const StageData*>> inputs;  ///< by port name; one entry unless `many`
-  const data::Scene* scene = nullptr;       ///< null if the pipeline names none
-  std::vector<std::string> trials;          ///< trials to work on, already matched against the stage's `trials` patterns;
-                                            ///< in the order of the first signals input
+  const data::Scene* scene = nullptr;                           ///< null if the pipeline names none
+  std::vector<std::string> trials;  ///< trials to work on, already matched against the stage's `trials`
+                                    ///< patterns; in the order of the first signals input
   std::size_t threads = 1;
   std::function<void(double fraction, const std::string& what)> progress;  ///< may be called from any thread
 
@@ -137,15 +137,15 @@ struct StageSpec {
   PortType output = PortType::signals;
   bool needs_scene = false;
   std::function<void(const StageContext&, StageOutput&)> run;
-  std::function<void(const ReportContext&, report::Section&)> report;           ///< may be empty
-  std::function<std::string(const ReportContext&)> methods;                     ///< may be empty
+  std::function<void(const ReportContext&, report::Section&)> report;  ///< may be empty
+  std::function<std::string(const ReportContext&)> methods;            ///< may be empty
   int version = 1;  ///< raised when the stage gives other results for the same inputs and options
 };
 
 /// All stages by name. Each folder adds its own (pipelines/stages/*.cpp).
 class Catalogue {
  public:
-  void add(StageSpec spec);                                  ///< std::logic_error on a name clash
+  void add(StageSpec spec);  ///< std::logic_error on a name clash
   const StageSpec* find(const std::string& name) const;
   std::vector<std::string> names() const;
   const std::vector<StageSpec>& stages() const { return stages_; }

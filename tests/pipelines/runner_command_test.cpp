@@ -27,7 +27,8 @@ class CommandTest : public ::testing::Test {
     std::vector<const char*> argv;
     for (const std::string& a : arguments) argv.push_back(a.c_str());
     std::ostringstream out, err;
-    const int code = command_line(static_cast<int>(argv.size()), argv.data(), fake_catalogue(), {out, err, false, nullptr});
+    const int code = command_line(static_cast<int>(argv.size()), argv.data(), fake_catalogue(),
+                                  {out, err, false, nullptr});
     out_ = out.str();
     err_ = err.str();
     return code;
@@ -46,8 +47,10 @@ TEST_F(CommandTest, CheckFindsMistakesWithoutRunning) {
 
 TEST_F(CommandTest, ExplainTellsOfStagesAndCodes) {
   EXPECT_EQ(call({"explain", "fake.scale"}), 0);
-  EXPECT_THAT(out_, AllOf(HasSubstr("fake.scale: a stage for tests"), HasSubstr("signal  (signals; the session where not wired)"),
-                          HasSubstr("lowpass_hz = 6.0"), HasSubstr("number [Hz], greater than 0 Hz."), HasSubstr("one of plain, fancy")));
+  EXPECT_THAT(
+      out_, AllOf(HasSubstr("fake.scale: a stage for tests"),
+                  HasSubstr("signal  (signals; the session where not wired)"), HasSubstr("lowpass_hz = 6.0"),
+                  HasSubstr("number [Hz], greater than 0 Hz."), HasSubstr("one of plain, fancy")));
   EXPECT_EQ(call({"explain", "unknown-key"}), 0);
   EXPECT_THAT(out_, HasSubstr("unknown-key: "));
   EXPECT_EQ(call({"explain", "fake.scal"}), 2);
@@ -65,7 +68,8 @@ TEST_F(CommandTest, ManualAndListHoldEveryStage) {
 TEST_F(CommandTest, InspectTellsWhatAFileHolds) {
   ASSERT_EQ(call({"run", path("study.toml"), "--out", path("run"), "--quiet"}), 0) << err_;
   EXPECT_EQ(call({"inspect", path("run/02-scaled.h5")}), 0);
-  EXPECT_THAT(out_, AllOf(HasSubstr("stage output"), HasSubstr("trial a (test)"), HasSubstr("50 samples at 100 Hz"), HasSubstr("table means"),
+  EXPECT_THAT(out_, AllOf(HasSubstr("stage output"), HasSubstr("trial a (test)"),
+                          HasSubstr("50 samples at 100 Hz"), HasSubstr("table means"),
                           HasSubstr("made from option.factor: 2.0"), HasSubstr("warning[fake-warning]")));
   EXPECT_EQ(call({"inspect", path("run")}), 0);
   EXPECT_THAT(out_, HasSubstr("scaled"));
@@ -83,7 +87,8 @@ TEST_F(CommandTest, CompareFindsDifferencesOfRuns) {
   EXPECT_EQ(out_, "no differences\n");
   ASSERT_EQ(call({"run", path("study.toml"), "--out", path("b"), "--quiet", "--set", "scaled.factor=3"}), 0);
   EXPECT_EQ(call({"compare", path("a"), path("b")}), 0);
-  EXPECT_THAT(out_, AllOf(HasSubstr("made differently: option factor changed 2.0 -> 3.0"), HasSubstr("means.mean: 3 of 3 rows differ")));
+  EXPECT_THAT(out_, AllOf(HasSubstr("made differently: option factor changed 2.0 -> 3.0"),
+                          HasSubstr("means.mean: 3 of 3 rows differ")));
   EXPECT_EQ(call({"compare", path("a"), path("nothing")}), 2);
 }
 
@@ -98,7 +103,8 @@ TEST_F(CommandTest, QuietRunsAreQuietAndOthersSayWhy) {
   call({"run", path("study.toml"), "--out", path("a"), "--quiet"});
   EXPECT_EQ(err_, "");
   call({"run", path("study.toml"), "--out", path("a"), "--set", "scaled.factor=3"});
-  EXPECT_THAT(err_, AllOf(HasSubstr("source reused: its output stands\n"), HasSubstr("[2/3] scaled (fake.scale): option factor changed 2.0 -> 3.0\n"),
+  EXPECT_THAT(err_, AllOf(HasSubstr("source reused: its output stands\n"),
+                          HasSubstr("[2/3] scaled (fake.scale): option factor changed 2.0 -> 3.0\n"),
                           HasSubstr("warning[fake-warning]")));
   EXPECT_THAT(out_, HasSubstr("report: "));
 }
@@ -107,7 +113,8 @@ TEST(ErrorCodes, EveryCodeInTheSourcesIsExplained) {
   const std::vector<std::regex> patterns{
       std::regex(R"rx(InputError[({]\s*"([a-z0-9]+(?:-[a-z0-9]+)*)")rx"),
       std::regex(R"rx(Severity::(?:error|warning|note),\s*"([a-z0-9]+(?:-[a-z0-9]+)*)")rx"),
-      std::regex(R"rx((?:error|warning|warn|note|fail|refuse|mistake|complain)\(\s*(?:[A-Za-z_.&*>-]+,\s*)?"([a-z0-9]+(?:-[a-z0-9]+)+)")rx")};
+      std::regex(
+          R"rx((?:error|warning|warn|note|fail|refuse|mistake|complain)\(\s*(?:[A-Za-z_.&*>-]+,\s*)?"([a-z0-9]+(?:-[a-z0-9]+)+)")rx")};
   std::set<std::string> unexplained;
   std::size_t found = 0;
   for (const char* folder : {"data", "emg", "hill", "optimise", "pipelines"}) {
@@ -118,7 +125,8 @@ TEST(ErrorCodes, EveryCodeInTheSourcesIsExplained) {
         for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) {
           ++found;
           const std::string code = (*match)[1];
-          if (!explain_error(code) && code != "error" && code != "warning" && code != "note") unexplained.insert(code + " in " + entry.path().filename().string());
+          if (!explain_error(code) && code != "error" && code != "warning" && code != "note")
+            unexplained.insert(code + " in " + entry.path().filename().string());
         }
       }
     }

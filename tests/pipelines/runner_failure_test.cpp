@@ -1,4 +1,5 @@
-// Killed, stopped, out of space, refused: nothing half-written is ever trusted, and exit codes tell what happened.
+// Killed, stopped, out of space, refused: nothing half-written is ever trusted, and exit codes tell what
+// happened.
 
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -10,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "runner_fake_stages.hpp"
 #include "pipelines/run_folder.hpp"
+#include "runner_fake_stages.hpp"
 #include "tests/support/paths.hpp"
 
 namespace brachium::pipelines::tests {
@@ -23,16 +24,20 @@ using ::testing::HasSubstr;
 /// A program of the tests' command line, started in a folder; its output goes to files there.
 class Child {
  public:
-  Child(const fs::path& folder, std::vector<std::string> arguments, rlim_t file_limit = RLIM_INFINITY) : folder_(folder) {
+  Child(const fs::path& folder, std::vector<std::string> arguments, rlim_t file_limit = RLIM_INFINITY)
+      : folder_(folder) {
     arguments.insert(arguments.begin(), BRACHIUM_FAKE_PROGRAM);
     std::vector<char*> argv;
     for (std::string& a : arguments) argv.push_back(a.data());
     argv.push_back(nullptr);
-    const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string(), where = folder.string();
+    const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string(),
+                      where = folder.string();
     pid_ = ::fork();
     if (pid_ == 0) {
       const rlimit limit{file_limit, file_limit};
-      if (::chdir(where.c_str()) != 0 || !std::freopen(out.c_str(), "w", stdout) || !std::freopen(err.c_str(), "w", stderr)) ::_exit(99);
+      if (::chdir(where.c_str()) != 0 || !std::freopen(out.c_str(), "w", stdout) ||
+          !std::freopen(err.c_str(), "w", stderr))
+        ::_exit(99);
       if (file_limit != RLIM_INFINITY) ::setrlimit(RLIMIT_FSIZE, &limit);
       ::execv(argv[0], argv.data());
       ::_exit(99);
@@ -61,7 +66,9 @@ bool has_partial(const fs::path& folder) {
   return false;
 }
 
-const std::string with_slow = "[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"first\"\nrun = \"fake.source\"\nvalue = 1\n[[stage]]\nname = \"slow\"\nrun = \"fake.slow\"\n";
+const std::string with_slow =
+    "[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"first\"\nrun = \"fake.source\"\nvalue = "
+    "1\n[[stage]]\nname = \"slow\"\nrun = \"fake.slow\"\n";
 
 class FailureTest : public ::testing::Test {
  protected:
@@ -73,7 +80,8 @@ class FailureTest : public ::testing::Test {
     return Child(folder_, arguments, file_limit);
   }
   void wait_for_slow_stage() const {
-    for (int i = 0; i < 1000 && !has_partial(folder_ / "run"); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (int i = 0; i < 1000 && !has_partial(folder_ / "run"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
     ASSERT_TRUE(has_partial(folder_ / "run"));
   }
   const fs::path folder_;
@@ -118,7 +126,9 @@ TEST_F(FailureTest, TwoRunsInOneFolderExcludeEachOther) {
 }
 
 TEST_F(FailureTest, AFullDiskLeavesNothingThatIsTrusted) {
-  define("[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"big\"\nrun = \"fake.source\"\nvalue = 0.1\ncount = 200000\n");
+  define(
+      "[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"big\"\nrun = \"fake.source\"\nvalue = 0.1\ncount = "
+      "200000\n");
   const Child full = start({}, rlim_t{60000});
   EXPECT_EQ(full.wait(), 2) << full.err();
   EXPECT_THAT(full.err(), HasSubstr("error[write-failed]"));
@@ -140,10 +150,14 @@ TEST_F(FailureTest, ExitCodesTellWhatWentWrong) {
   define(chain + "[[stage]]\nname = \"bad\"\nrun = \"fake.fail\"\ninput = { signal = \"source\" }\n");
   const Child input = start();
   EXPECT_EQ(input.wait(), 2);
-  EXPECT_THAT(input.err(), HasSubstr("stage `bad` failed\nerror[bad-signal]: the signal `x` is no good\n  help: record it again\n"));
+  EXPECT_THAT(
+      input.err(),
+      HasSubstr(
+          "stage `bad` failed\nerror[bad-signal]: the signal `x` is no good\n  help: record it again\n"));
   const Child numbers = start({"--set", "bad.how=numbers"});
   EXPECT_EQ(numbers.wait(), 1);
-  EXPECT_THAT(numbers.err(), HasSubstr("error[no-convergence]: trial `a`: the step became too small (after 7 iterations, residual 0.5, step 1e-09, worst: BIC)"));
+  EXPECT_THAT(numbers.err(), HasSubstr("error[no-convergence]: trial `a`: the step became too small (after 7 "
+                                       "iterations, residual 0.5, step 1e-09, worst: BIC)"));
   const Child defect = start({"--set", "bad.how=defect"});
   EXPECT_EQ(defect.wait(), 1);
   EXPECT_THAT(defect.err(), HasSubstr("error[internal-error]: stage `bad` broke down: index 7"));

@@ -13,7 +13,9 @@
 namespace brachium::pipelines::tests {
 namespace {
 
-InputSpec signals_port(const std::string& name) { return {name, PortType::signals, "any signals", false, false, true}; }
+InputSpec signals_port(const std::string& name) {
+  return {name, PortType::signals, "any signals", false, false, true};
+}
 
 data::TrialInfo bare(const data::TrialInfo& trial) {
   data::TrialInfo info = trial;
@@ -28,8 +30,10 @@ void source(const StageContext& context, StageOutput& output) {
     data::TrialInfo trial;
     trial.name = name;
     output.signals->begin_trial(trial);
-    data::Signal signal{{"x", data::Quantity::other, "1", 100.0, 0.0, count, "", "", {}}, std::vector<double>(count)};
-    std::iota(signal.samples.begin(), signal.samples.end(), context.options->number("value") + static_cast<double>(name.front()));
+    data::Signal signal{{"x", data::Quantity::other, "1", 100.0, 0.0, count, "", "", {}},
+                        std::vector<double>(count)};
+    std::iota(signal.samples.begin(), signal.samples.end(),
+              context.options->number("value") + static_cast<double>(name.front()));
     output.signals->write(name, signal);
   }
 }
@@ -37,12 +41,14 @@ void source(const StageContext& context, StageOutput& output) {
 void scale(const StageContext& context, StageOutput& output) {
   const StageData& in = context.input("signal");
   output.signals->begin(in.signals->info());
-  for (const std::string& name : context.trials) output.signals->begin_trial(bare(in.signals->info().trials[in.signals->info().trial_index(name)]));
+  for (const std::string& name : context.trials)
+    output.signals->begin_trial(bare(in.signals->info().trials[in.signals->info().trial_index(name)]));
   std::vector<double> means(context.trials.size());
   data::parallel_for(context.trials.size(), context.threads, [&](std::size_t t) {
     data::Signal signal = in.signals->signal(context.trials[t], "x");
     for (double& v : signal.samples) v = std::sin(v) * context.options->number("factor");
-    means[t] = std::accumulate(signal.samples.begin(), signal.samples.end(), 0.0) / static_cast<double>(signal.samples.size());
+    means[t] = std::accumulate(signal.samples.begin(), signal.samples.end(), 0.0) /
+               static_cast<double>(signal.samples.size());
     output.signals->write(context.trials[t], signal);
     context.progress(1.0, context.trials[t]);
   });
@@ -55,7 +61,8 @@ void sum(const StageContext& context, StageOutput& output) {
   for (const StageData* part : context.inputs.at("parts")) {
     for (const double mean : part->tables.at("means").numbers("mean")) total += mean;
   }
-  output.tables["total"] = {"Total", {{"what", "", std::vector<std::string>{"all"}}, {"sum", "1", std::vector<double>{total}}}};
+  output.tables["total"] = {
+      "Total", {{"what", "", std::vector<std::string>{"all"}}, {"sum", "1", std::vector<double>{total}}}};
   output.attributes["verdict"] = "the sum is there";
 }
 
@@ -77,7 +84,8 @@ void predict(const StageContext& context, StageOutput& output) {
 void fail(const StageContext& context, StageOutput&) {
   const std::string& how = context.options->text("how");
   if (how == "input") throw data::InputError("bad-signal", "the signal `x` is no good", "record it again");
-  if (how == "numbers") throw data::ConvergenceFailure({"trial `a`", "the step became too small", 7, 0.5, 1e-9, "BIC"});
+  if (how == "numbers")
+    throw data::ConvergenceFailure({"trial `a`", "the step became too small", 7, 0.5, 1e-9, "BIC"});
   throw std::out_of_range("index 7");
 }
 
@@ -115,7 +123,8 @@ OptionSpec of_type(OptionType type, std::string key, OptionValue fallback) {
 
 Catalogue fake_catalogue() {
   Catalogue catalogue;
-  const auto add = [&](std::string name, PortType gives, std::vector<InputSpec> inputs, std::vector<OptionSpec> options,
+  const auto add = [&](std::string name, PortType gives, std::vector<InputSpec> inputs,
+                       std::vector<OptionSpec> options,
                        std::function<void(const StageContext&, StageOutput&)> run) {
     StageSpec spec;
     spec.name = std::move(name);
@@ -142,16 +151,21 @@ Catalogue fake_catalogue() {
        of_type(OptionType::texts, "names", std::vector<std::string>{"a", "b", "c"})},
       source);
   add("fake.scale", PortType::signals, {signals_port("signal")}, {factor, lowpass, mode, bounds}, scale);
-  add("fake.sum", PortType::tables, {{"parts", PortType::tables, "stages with a table of means", false, true, false}}, {}, sum);
+  add("fake.sum", PortType::tables,
+      {{"parts", PortType::tables, "stages with a table of means", false, true, false}}, {}, sum);
   add("fake.fit", PortType::subject, {signals_port("signal")}, {number("force_N", "N", 500.0)}, fit);
   add("fake.predict", PortType::tables,
-      {signals_port("signal"), {"subject", PortType::subject, "a subject", false, false, false}}, {}, predict);
-  add("fake.fail", PortType::signals, {signals_port("signal")}, {of_type(OptionType::text, "how", std::string("input"))}, fail);
+      {signals_port("signal"), {"subject", PortType::subject, "a subject", false, false, false}}, {},
+      predict);
+  add("fake.fail", PortType::signals, {signals_port("signal")},
+      {of_type(OptionType::text, "how", std::string("input"))}, fail);
   add("fake.slow", PortType::signals, {}, {number("seconds", "s", 20.0)}, slow);
   return catalogue;
 }
 
-void write_file(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 std::string file_text(const std::filesystem::path& file) {
   std::ostringstream text;

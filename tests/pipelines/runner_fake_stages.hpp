@@ -9,14 +9,16 @@
 
 namespace brachium::pipelines::tests {
 
-/// fake.source (signals from nothing), fake.scale (signals to signals, by trials in parallel), fake.sum (tables of one
-/// or more), fake.fit (a subject), fake.predict (signals and a subject), fake.fail, fake.slow.
+/// fake.source (signals from nothing), fake.scale (signals to signals, by trials in parallel), fake.sum
+/// (tables of one or more), fake.fit (a subject), fake.predict (signals and a subject), fake.fail, fake.slow.
 Catalogue fake_catalogue();
 
 /// What an observer was told.
 class Watcher final : public RunObserver {
  public:
-  void stage_begins(const StageRecord& stage, std::size_t, std::size_t) override { began.push_back(stage.name); }
+  void stage_begins(const StageRecord& stage, std::size_t, std::size_t) override {
+    began.push_back(stage.name);
+  }
   void stage_progress(const StageRecord&, double, const std::string&) override {}
   void stage_ends(const StageRecord&, const std::vector<data::Diagnostic>&) override {}
   void message(const std::string& text) override { messages.push_back(text); }
@@ -31,7 +33,9 @@ struct Study {
   explicit Study(std::filesystem::path folder);
   void define(const std::string& text) const { write_file(folder / "study.toml", text); }
   RunResult run(const std::vector<std::string>& settings = {});
-  std::string reason(const RunResult& result, const std::string& stage) const { return result.find(stage)->reason; }
+  std::string reason(const RunResult& result, const std::string& stage) const {
+    return result.find(stage)->reason;
+  }
 
   std::filesystem::path folder;
   RunRequest request;

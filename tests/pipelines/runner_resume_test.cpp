@@ -25,7 +25,8 @@ class RunnerTest : public ::testing::Test {
 TEST(Sha256, EqualsThePublishedVectors) {  // FIPS 180-4 examples; NIST CAVP
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   Sha256 million;
   for (int i = 0; i < 1000; ++i) million.add(std::string(1000, 'a'));
   EXPECT_EQ(million.finish(), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
@@ -37,7 +38,8 @@ TEST_F(RunnerTest, FirstRunRunsEverythingAndLeavesItsFiles) {
   EXPECT_THAT(study_.watcher.began, ElementsAre("source", "scaled", "total"));
   EXPECT_EQ(study_.reason(result, "scaled"), "no output yet");
   EXPECT_EQ(result.verdict, "the sum is there");
-  for (const char* file : {"01-source.h5", "02-scaled.h5", "03-total.h5", "definition.toml", "provenance.json", "result.json", "log.txt", "report.html"}) {
+  for (const char* file : {"01-source.h5", "02-scaled.h5", "03-total.h5", "definition.toml",
+                           "provenance.json", "result.json", "log.txt", "report.html"}) {
     EXPECT_TRUE(fs::exists(study_.folder / "run" / file)) << file;
   }
   EXPECT_THAT(file_text(study_.folder / "run" / "report.html"), HasSubstr("the sum is there"));
@@ -62,9 +64,12 @@ TEST_F(RunnerTest, ChangedOptionRunsTheStageAndWhatReadsIt) {
 
 TEST_F(RunnerTest, ChangedTrialsAndWiringAreReasons) {
   study_.run();
-  EXPECT_EQ(study_.reason(study_.run({"scaled.trials=[\"a\", \"c\"]"}), "scaled"), "trials changed all -> a, c");
+  EXPECT_EQ(study_.reason(study_.run({"scaled.trials=[\"a\", \"c\"]"}), "scaled"),
+            "trials changed all -> a, c");
   study_.define(chain + "[[stage]]\nname = \"other\"\nrun = \"fake.source\"\nvalue = 9\n");
-  EXPECT_EQ(study_.reason(study_.run({"scaled.input.signal=other", "scaled.trials=[\"a\", \"c\"]"}), "scaled"), "input signal reads `other` instead of `source`");
+  EXPECT_EQ(
+      study_.reason(study_.run({"scaled.input.signal=other", "scaled.trials=[\"a\", \"c\"]"}), "scaled"),
+      "input signal reads `other` instead of `source`");
 }
 
 TEST_F(RunnerTest, DamagedAndForeignOutputsAreMadeAgain) {
@@ -76,7 +81,8 @@ TEST_F(RunnerTest, DamagedAndForeignOutputsAreMadeAgain) {
   EXPECT_EQ(study_.reason(result, "scaled"), "its output is unreadable");
   EXPECT_EQ(result.outcome, Outcome::done);
   fs::copy_file(study_.folder / "run" / "01-source.h5", output, fs::copy_options::overwrite_existing);
-  EXPECT_THAT(study_.reason(study_.run(), "scaled"), HasSubstr("it ran as fake.source (version 1), now as fake.scale (version 1)"));
+  EXPECT_THAT(study_.reason(study_.run(), "scaled"),
+              HasSubstr("it ran as fake.source (version 1), now as fake.scale (version 1)"));
 }
 
 TEST_F(RunnerTest, OnlyRunsOneStageFromStoredInputs) {
@@ -88,7 +94,8 @@ TEST_F(RunnerTest, OnlyRunsOneStageFromStoredInputs) {
   const RunResult result = study_.run({"source.value=8"});  // not asked for: the stored output is used
   EXPECT_THAT(study_.watcher.began, ElementsAre("total"));
   EXPECT_EQ(study_.reason(result, "total"), "asked for with --only");
-  EXPECT_EQ(study_.reason(result, "source"), "not asked for; its stored output is out of date: option value changed 3.0 -> 8.0");
+  EXPECT_EQ(study_.reason(result, "source"),
+            "not asked for; its stored output is out of date: option value changed 3.0 -> 8.0");
 }
 
 TEST_F(RunnerTest, OnlyWithoutStoredInputsSaysWhatToRunFirst) {
@@ -111,7 +118,9 @@ TEST_F(RunnerTest, UntilStopsThereAndFromRunsAgain) {
 
 TEST_F(RunnerTest, MovedStageKeepsItsOutput) {
   study_.run();
-  study_.define("[pipeline]\ntitle = \"A chain\"\n[[stage]]\nname = \"new\"\nrun = \"fake.source\"\nvalue = 1\n" + chain.substr(chain.find("[[stage]]")));
+  study_.define(
+      "[pipeline]\ntitle = \"A chain\"\n[[stage]]\nname = \"new\"\nrun = \"fake.source\"\nvalue = 1\n" +
+      chain.substr(chain.find("[[stage]]")));
   study_.run();
   EXPECT_THAT(study_.watcher.began, ElementsAre("new"));
   EXPECT_TRUE(fs::exists(study_.folder / "run" / "04-total.h5"));
@@ -144,14 +153,17 @@ TEST_F(RunnerTest, UnmatchedTrialsAreToldWithTheirPlace) {
 }
 
 TEST_F(RunnerTest, SubjectIsAFileOfItsOwnThatOtherPipelinesRead) {
-  study_.define("[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"source\"\nrun = \"fake.source\"\nvalue = 1\n"
-                "[[stage]]\nname = \"who\"\nrun = \"fake.fit\"\ninput = { signal = \"source\" }\nforce_N = 612.0\n");
+  study_.define(
+      "[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"source\"\nrun = \"fake.source\"\nvalue = 1\n"
+      "[[stage]]\nname = \"who\"\nrun = \"fake.fit\"\ninput = { signal = \"source\" }\nforce_N = 612.0\n");
   study_.run();
   ASSERT_TRUE(fs::exists(study_.folder / "run" / "who.subject.toml"));
-  const std::string predict = "[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"source\"\nrun = \"fake.source\"\nvalue = 1\n"
-                              "[[stage]]\nname = \"forces\"\nrun = \"fake.predict\"\n"
-                              "input = { signal = \"source\", subject = \"file:run/who.subject.toml\" }\n"
-                              "[[expect]]\nstage = \"forces\"\ntable = \"forces\"\nrow = 0\ncolumn = \"force\"\nvalue = 612\ntolerance = 1e-9\n";
+  const std::string predict =
+      "[pipeline]\ntitle = \"t\"\n[[stage]]\nname = \"source\"\nrun = \"fake.source\"\nvalue = 1\n"
+      "[[stage]]\nname = \"forces\"\nrun = \"fake.predict\"\n"
+      "input = { signal = \"source\", subject = \"file:run/who.subject.toml\" }\n"
+      "[[expect]]\nstage = \"forces\"\ntable = \"forces\"\nrow = 0\ncolumn = \"force\"\nvalue = "
+      "612\ntolerance = 1e-9\n";
   Study other(study_.folder);
   other.define(predict);
   other.request.out = study_.folder / "prediction";
@@ -174,21 +186,89 @@ TEST_F(RunnerTest, StorageFilesAreWrittenOnRequest) {
 
 TEST_F(RunnerTest, ExpectedNumbersFailTheRun) {
   const auto expect = [&](const std::string& lines) {
-    study_.define(chain + "[[expect]]\nstage = \"total\"\ntable = \"total\"\nwhere = { what = \"all\" }\ncolumn = \"sum\"\n" + lines);
+    study_.define(
+        chain +
+        "[[expect]]\nstage = \"total\"\ntable = \"total\"\nwhere = { what = \"all\" }\ncolumn = \"sum\"\n" +
+        lines);
     return study_.run();
   };
   const double sum = [&] {
     study_.run();
-    return io::read_stage_content(study_.folder / "run" / "03-total.h5").tables.at("total").numbers("sum").at(0);
+    return io::read_stage_content(study_.folder / "run" / "03-total.h5")
+        .tables.at("total")
+        .numbers("sum")
+        .at(0);
   }();
   EXPECT_EQ(expect("value = " + std::to_string(sum) + "\ntolerance = 1e-5\n").outcome, Outcome::done);
   const RunResult missed = expect("min = 1000\n");
   EXPECT_EQ(missed.outcome, Outcome::expectation_failed);
   EXPECT_EQ(exit_code(missed.outcome), 1);
-  EXPECT_THAT(expectation_table(missed.expectations), HasSubstr("total/total[what=all].sum  at least 1000  "));
+  EXPECT_THAT(expectation_table(missed.expectations),
+              HasSubstr("total/total[what=all].sum  at least 1000  "));
   EXPECT_THAT(expectation_table(missed.expectations), HasSubstr("FAILED"));
   EXPECT_EQ(study_.run({"expect=false"}).outcome, Outcome::done);
   EXPECT_EQ(study_.run({"expect.1.min=-1000"}).outcome, Outcome::done);
+}
+
+/// A description of two trials recorded as CSV.
+class ImportTest : public ::testing::Test {
+ protected:
+  ImportTest() : study_(brachium::tests::scratch_dir()) {
+    fs::create_directories(study_.folder / "here");
+    write_file(study_.folder / "session.toml",
+               "[session]\nsubject = \"s1\"\nrecordings = \"elsewhere\"\n[[trial]]\nname = \"{n}\"\nkind = "
+               "\"test\"\neach = [{ n = \"a\" }, { n = \"b\" }]\n"
+               "[[file]]\npath = \"{n}.csv\"\ntime = \"time\"\n[[file.signal]]\ncolumn = \"x\"\nname = "
+               "\"x\"\nquantity = "
+               "\"other\"\nunit = \"1\"\n");
+    record("a", 1.0);
+    record("b", 2.0);
+    study_.define(
+        "[pipeline]\ntitle = \"t\"\nsession = \"session.toml\"\n[[stage]]\nname = \"scaled\"\nrun = "
+        "\"fake.scale\"\n");
+  }
+  void record(const std::string& trial, double value) const {
+    std::string text = "time,x\n";
+    for (int i = 0; i < 20; ++i) text += std::to_string(0.01 * i) + "," + std::to_string(value + i) + "\n";
+    write_file(study_.folder / "here" / (trial + ".csv"), text);
+  }
+  std::string here() const { return "recordings=" + (study_.folder / "here").string(); }
+  Study study_;
+};
+
+TEST_F(ImportTest, DescriptionIsImportedOnceAsTheStageSession) {
+  const RunResult first = study_.run({here()});
+  EXPECT_EQ(first.outcome, Outcome::done) << (first.errors.empty() ? "" : first.errors[0].message);
+  EXPECT_THAT(study_.watcher.began, ElementsAre("session", "scaled"));
+  EXPECT_TRUE(fs::exists(study_.folder / "run" / "00-session.h5"));
+  EXPECT_THAT(file_text(study_.folder / "run" / "provenance.json"), HasSubstr("a.csv"));
+  study_.run({here()});
+  EXPECT_THAT(study_.watcher.began, IsEmpty());
+}
+
+TEST_F(ImportTest, ChangedRecordingIsAReason) {
+  study_.run({here()});
+  record("b", 7.0);
+  const RunResult result = study_.run({here()});
+  EXPECT_EQ(study_.reason(result, "session"), "the recording `b.csv` changed");
+  EXPECT_EQ(study_.reason(result, "scaled"), "input `session` ran again");
+}
+
+TEST_F(ImportTest, MistakesOfTheDescriptionAreThoseOfThePipeline) {
+  EXPECT_THAT(mistakes_of([&] { study_.run(); }), HasSubstr("error[missing-folder]"));
+  EXPECT_THAT(mistakes_of([&] {
+                study_.run({here(), "scaled.trials=[\"q\"]", "scaled.factor=-1"});
+              }),
+              ::testing::AllOf(HasSubstr("error[no-match]: no trial of the session matches `q`"),
+                               HasSubstr("error[out-of-range]")));
+}
+
+TEST_F(ImportTest, ReportCanBeWrittenAgainFromTheResolvedDefinition) {
+  study_.run({here()});
+  fs::remove(study_.folder / "run" / "report.html");
+  const Catalogue catalogue = fake_catalogue();
+  write_report_again(catalogue, study_.folder / "run");
+  EXPECT_THAT(file_text(study_.folder / "run" / "report.html"), HasSubstr("subject s1, 2 trials"));
 }
 
 TEST(Fingerprint, DiffersInEveryPart) {
