@@ -81,7 +81,6 @@ class Reader {
       return;
     }
     definition_.title = pipeline->require_text("title");
-    pipeline_where_ = pipeline->node().where;
     if (const auto session = pipeline->text("session")) {
       session_where_ = pipeline->span_of("session");
       if (file_exists(resolve(*session), session_where_, "session")) definition_.session = resolve(*session);
@@ -333,7 +332,7 @@ class Reader {
   std::vector<Diagnostic> diagnostics_;
   Definition definition_;
   bool names_session_ = false, names_scene_ = false;
-  data::SourceSpan pipeline_where_, session_where_, scene_where_;
+  data::SourceSpan session_where_, scene_where_;
   std::vector<std::string> trials_, channels_;  ///< of the session, where known
 };
 

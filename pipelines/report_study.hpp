@@ -1,5 +1,6 @@
 #pragma once
-/// What a study is about, for its report: the recordings and the scene with the sources and assumptions of its numbers.
+/// What a study is about, for its report: the recordings and the scene with the sources and assumptions of
+/// its numbers.
 
 #include "pipelines/assemble_report.hpp"
 

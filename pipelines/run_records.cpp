@@ -95,6 +95,7 @@ json provenance_json(const RunResult& result) {
   out["machine"]["cores"] = std::thread::hardware_concurrency();
   out["command_line"] = result.command_line;
   out["settings"] = definition.settings;
+  for (const auto& [name, value] : definition.variables.members) out["variables"][name] = node_text(value);
   out["definition"] = definition.file.string();
   out["started"] = result.started;
   out["ended"] = result.ended;
