@@ -11,7 +11,6 @@
 #include "data/model/parallel.hpp"
 #include "emg/random.hpp"
 #include "optimise/objective.hpp"
-#include "optimise/sampling.hpp"
 
 namespace brachium::optimise {
 namespace {
@@ -27,6 +26,35 @@ double power_gain(double f, double cutoff_hz) {
   const double h = 1.0 / (1.0 + x * x * x * x);
   return h * h;
 }
+
+/// One pass of a second-order Butterworth low-pass, bilinear with prewarped edge.
+struct LowPass {
+  double b0, a1, a2;
+
+  LowPass(double edge_hz, double rate_hz) {
+    const double w = std::tan(std::numbers::pi * std::min(edge_hz / rate_hz, 0.49)), norm = 1.0 + std::numbers::sqrt2 * w + w * w;
+    b0 = w * w / norm;
+    a1 = 2.0 * (w * w - 1.0) / norm;
+    a2 = (1.0 - std::numbers::sqrt2 * w + w * w) / norm;
+  }
+
+  void run(std::vector<double>& x) const {
+    double s1 = 0.0, s2 = 0.0;  // transposed direct form II
+    for (double& value : x) {
+      const double y = b0 * value + s1;
+      s1 = 2.0 * b0 * value - a1 * y + s2;
+      s2 = b0 * value - a2 * y;
+      value = y;
+    }
+  }
+
+  void both_ways(std::vector<double>& x) const {
+    run(x);
+    std::reverse(x.begin(), x.end());
+    run(x);
+    std::reverse(x.begin(), x.end());
+  }
+};
 
 /// Autocovariance of |x| / E|x| for Gaussian x of autocorrelation rho: rho asin rho + sqrt(1 - rho^2) - 1.
 double rectified_autocovariance(double rho) {
@@ -136,48 +164,22 @@ double envelope_coefficient_of_variation(double lower_edge_hz, double upper_edge
 
 std::vector<double> envelope_noise(std::size_t count, double rate_hz, double cutoff_hz, std::uint64_t seed,
                                    std::uint64_t stream) {
-  if (!(rate_hz > 0.0) || !(cutoff_hz > 0.0))
-    throw data::InputError("out-of-range", fmt::format("noise at {} Hz with cut-off {} Hz is not possible", rate_hz, cutoff_hz));
-  // Far above the cut-off, a coarse grid and cubic interpolation do: 20 samples a period of the cut-off.
-  const auto coarse = static_cast<std::size_t>(rate_hz / (20.0 * cutoff_hz));
-  if (coarse >= 2) {
-    data::SignalInfo grid;
-    grid.rate_hz = rate_hz / static_cast<double>(coarse);
-    grid.count = count / coarse + 2;
-    const std::vector<double> knots = envelope_noise(grid.count, grid.rate_hz, cutoff_hz, seed, stream);
-    std::vector<double> times(count), out(count);
-    for (std::size_t i = 0; i < count; ++i) times[i] = static_cast<double>(i) / rate_hz;
-    Resampling(grid, times).apply(knots, out);
-    return out;
-  }
+  if (!(rate_hz > 0.0) || !(cutoff_hz > 0.0) || !(cutoff_hz < 0.4 * rate_hz))
+    throw data::InputError("cutoff-above-nyquist",
+                           fmt::format("noise with cut-off {} Hz cannot be simulated on excitations at {} Hz", cutoff_hz, rate_hz));
+  // White noise through the low-pass itself, forward and backward, with room at both ends for its transients.
+  const LowPass pass(cutoff_hz / std::pow(std::sqrt(2.0) - 1.0, 0.25), rate_hz);
+  const auto margin = static_cast<std::size_t>(std::ceil(4.0 * rate_hz / cutoff_hz));
   emg::Random random(seed, stream);
-  // A sum of cosines with random phases and amplitudes over the pass band: exact spectrum, any rate. The period is the
-  // record's length and a margin, so that its ends are not correlated.
-  const double period = static_cast<double>(count) / rate_hz + 2.0 / cutoff_hz;
-  const double df = 1.0 / period;
-  const auto terms = static_cast<std::size_t>(std::ceil(3.0 * cutoff_hz / df));
-  double total = 0.0;
-  std::vector<double> cosine(terms), sine(terms);
-  for (std::size_t k = 0; k < terms; ++k) {
-    const double f = (static_cast<double>(k) + 0.5) * df;
-    const double power = f < 0.5 * rate_hz ? power_gain(f, cutoff_hz) : 0.0;
-    total += power;
-    cosine[k] = std::sqrt(power) * random.normal();
-    sine[k] = std::sqrt(power) * random.normal();
-  }
-  std::vector<double> out(count, 0.0);
-  for (std::size_t k = 0; k < terms; ++k) {
-    const double angle = 2.0 * std::numbers::pi * (static_cast<double>(k) + 0.5) * df / rate_hz;
-    const double c = std::cos(angle), s = std::sin(angle);
-    double x = 1.0, y = 0.0;  // cos and sin of i * angle, by rotation
-    for (std::size_t i = 0; i < count; ++i) {
-      out[i] += cosine[k] * x + sine[k] * y;
-      const double next = x * c - y * s;
-      y = x * s + y * c;
-      x = next;
-    }
-  }
-  for (double& value : out) value /= std::sqrt(total);
+  std::vector<double> x(count + 2 * margin), impulse(2 * margin + 1, 0.0);
+  for (double& value : x) value = random.normal();
+  impulse[margin] = 1.0;
+  double energy = 0.0;
+  pass.both_ways(x);
+  pass.both_ways(impulse);
+  for (double value : impulse) energy += value * value;
+  std::vector<double> out(x.begin() + static_cast<std::ptrdiff_t>(margin), x.begin() + static_cast<std::ptrdiff_t>(margin + count));
+  for (double& value : out) value /= std::sqrt(energy);
   return out;
 }
 

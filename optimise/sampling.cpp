@@ -16,7 +16,7 @@ Resampling::Resampling(const data::SignalInfo& from, std::span<const double> tim
   identity_ = times_s.size() == from.count;
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const double position = (times_s[i] - from.start_time_s) * from.rate_hz;
-    if (!(position >= -1e-6 && position <= static_cast<double>(n - 1) + 1e-6))
+    if (!(position >= -1e-3 && position <= static_cast<double>(n - 1) + 1e-3))
       throw std::out_of_range("an instant lies outside the signal");
     const double nearest = std::round(position);
     if (std::abs(position - nearest) < 1e-6 || n == 1) {

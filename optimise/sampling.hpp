@@ -16,7 +16,7 @@ namespace brachium::optimise {
 class Resampling {
  public:
   Resampling() = default;
-  /// Instants must lie inside the signal's span (to 1e-6 of a period); std::out_of_range otherwise.
+  /// Instants must lie inside the signal's span (to 1e-3 of a period); std::out_of_range otherwise.
   Resampling(const data::SignalInfo& from, std::span<const double> times_s);
   std::size_t size() const { return first_.size(); }
   bool identity() const { return identity_; }

@@ -71,9 +71,12 @@ MatrixXd long_run_scores(const MatrixXd& G, const std::vector<ResidualBlock>& bl
 WeakDirection direction(const std::vector<Parameter>& parameters, VectorXd v, double relative) {
   WeakDirection weak;
   weak.relative_singular_value = relative;
-  Index largest = 0;
-  v.cwiseAbs().maxCoeff(&largest);
-  if (v[largest] < 0.0) v = -v;
+  const double size = v.cwiseAbs().maxCoeff();
+  for (Index j = 0; j < v.size(); ++j) {
+    if (std::abs(v[j]) < 0.99 * size) continue;  // the first of the largest components is written positive
+    if (v[j] < 0.0) v = -v;
+    break;
+  }
   std::vector<Index> order;
   for (Index j = 0; j < v.size(); ++j)
     if (std::abs(v[j]) > 0.25) order.push_back(j);

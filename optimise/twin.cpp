@@ -91,7 +91,7 @@ std::vector<double> channel_excitation(const ProgrammeTraces& traces, const Twin
   const bool maximal = trial.programme == Programme::mvc;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double follow = maximal ? own[i] : own[i] * (1.0 - options.independence * out[i]);
-    out[i] = std::min(1.0, follow + options.cocontraction * other[i]);
+    out[i] = std::clamp(follow + options.cocontraction * other[i], 0.0, 1.0);
   }
   return out;
 }

@@ -42,7 +42,7 @@ TwinOptions random_trials(int count, double duration_s) {
   return options;
 }
 
-/// Every muscle with a channel of its own, flexors and extensors as groups, the recursion's coefficients -0.6 and -0.4.
+/// Every muscle with a channel of its own, flexors and extensors as groups, the recursion's coefficients -0.4 and -0.6.
 data::Scene twelve(data::Scene scene) {
   for (data::SceneMuscle& m : scene.muscles) {
     m.group = m.name.starts_with("TRI") ? "extensors" : "flexors";
@@ -50,8 +50,8 @@ data::Scene twelve(data::Scene scene) {
     m.drive.kind = data::MuscleDrive::Kind::channels;
     m.drive.channels = {{m.name, 1.0}};
     m.activation.delay_s = 0.0;
-    m.activation.time_constant_1_s = emg::time_constant(-0.6, 200.0);
-    m.activation.time_constant_2_s = emg::time_constant(-0.4, 200.0);
+    m.activation.time_constant_1_s = emg::time_constant(-0.4, 200.0);
+    m.activation.time_constant_2_s = emg::time_constant(-0.6, 200.0);
   }
   return scene;
 }
@@ -67,8 +67,8 @@ data::Scene disturbed(data::Scene scene) {
       m.activation.delay_s = 0.055;
       m.parameters.optimal_fibre_length_m *= 1.0 - 0.04 * sign;
     } else {
-      m.activation.time_constant_1_s = emg::time_constant(-0.7, 200.0);
-      m.activation.time_constant_2_s = emg::time_constant(-0.3, 200.0);
+      m.activation.time_constant_1_s = emg::time_constant(-0.3, 200.0);
+      m.activation.time_constant_2_s = emg::time_constant(-0.7, 200.0);
     }
   }
   return scene;

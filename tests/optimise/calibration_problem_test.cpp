@@ -151,8 +151,8 @@ TEST(CalibrationProblem, ComparesAtTheReferencesOwnTimeStamps) {
   EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-9);
   const TrialWindow& w = problem.windows()[0];
   EXPECT_EQ(w.before + w.used + w.after, m.samples.size());
-  EXPECT_EQ(w.after, 2u);   // 0.05 s at 50 Hz, last sample before the edge not counted
-  EXPECT_EQ(w.before, 3u);  // and at the start
+  EXPECT_EQ(w.before, 3u);  // 0.05 s are two and a half periods at 50 Hz
+  EXPECT_EQ(w.after, 3u);
 }
 
 TEST(CalibrationProblem, AHoldWeighsNoMoreThanItsSamples) {
@@ -246,7 +246,7 @@ TEST(CalibrationProblem, RefusesImpossibleFreeParameters) {
   f = free(Quantity::tendon_slack_length, Scope::group);
   f.lower = 0.1;
   f.upper = 0.2;
-  EXPECT_EQ(message(f).substr(0, 81), "bad-bounds: `triceps tendon_slack_length_factor` is shared as a factor: its bounds");
+  EXPECT_EQ(message(f).substr(0, 82), "bad-bounds: `triceps tendon_slack_length_factor` is shared as a factor: its bounds");
   f = free(Quantity::delay);
   f.lower = 0.05;
   f.upper = 0.10;

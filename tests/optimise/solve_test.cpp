@@ -18,6 +18,7 @@ SolveOptions with(Solver solver) {
   SolveOptions options;
   options.solver = solver;
   options.max_iterations = 2000;
+  options.max_evaluations = 6000;
   return options;
 }
 
@@ -41,7 +42,7 @@ TEST_P(EverySolver, StopsOnTheBoundThatCutsTheValley) {
 
 TEST_P(EverySolver, RepeatsExactlyAndDoesNotDependOnThreads) {
   SolveOptions options = with(GetParam());
-  options.max_evaluations = 1500;
+  options.max_evaluations = 300;
   options.starts = 3;
   const Summary one = solve(decay(), options);
   options.threads = 2;
