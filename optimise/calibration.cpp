@@ -63,15 +63,13 @@ std::vector<bool> at_bounds(const std::vector<Parameter>& parameters, const Vect
   return out;
 }
 
-/// Adds the share of the excitation's noise: what the residuals show beyond it keeps its own share of the sandwich, and
-/// no standard error becomes smaller than it was.
-void widen(const CalibrationProblem& problem, const ExcitationErrorResult& error, const VectorXd& residuals,
-           const MatrixXd& jacobian, const StatisticsOptions& options, FitStatistics& statistics) {
-  const double mean_square = residuals.squaredNorm() / static_cast<double>(residuals.size());
-  const double rest = mean_square > 0.0 ? std::clamp(1.0 - error.explained_variance / mean_square, 0.0, 1.0) : 0.0;
+/// The covariance under noise in the excitation takes the sandwich's place; no standard error becomes smaller by it. Where
+/// the bias is not taken off, it counts as an error.
+void widen(const CalibrationProblem& problem, const ExcitationErrorResult& error, bool corrected, const MatrixXd& jacobian,
+           const StatisticsOptions& options, FitStatistics& statistics) {
   const VectorXd before = statistics.covariance.diagonal();
-  MatrixXd C = error.covariance + rest * statistics.covariance;
-  C.diagonal() += error.bias_standard_error.cwiseAbs2();
+  MatrixXd C = error.covariance;
+  if (!corrected) C += error.bias * error.bias.transpose();
   VectorXd raise = VectorXd::Ones(C.rows());
   for (Index j = 0; j < C.rows(); ++j)
     if (C(j, j) > 0.0 && C(j, j) < before[j]) raise[j] = std::sqrt(before[j] / C(j, j));
@@ -87,6 +85,13 @@ void add_warnings(const CalibrationProblem& problem, CalibrationResult& result) 
   if (!result.summary.converged)
     add(data::Severity::warning, "not-converged", "the calibration did not converge: " + result.summary.message(),
         "allow more iterations, or set fewer parameters free");
+  if (result.excitation_error.limited)
+    add(data::Severity::warning, "unreliable-excitation",
+        fmt::format("noise in the excitations hides a combination of parameters (reliability {:.2f}): its bias is only partly "
+                    "removed", result.excitation_error.least_reliability),
+        "let channels act one at a time, lower the envelope's cut-off, or set fewer parameters free");
+  if (!result.excitation_error.converged)
+    add(data::Severity::warning, "not-converged", "the correction for noise in the excitations did not converge");
   for (const TrialWindow& w : result.windows) {
     if (w.above_one > 0)
       add(data::Severity::warning, "excitation-above-one",
@@ -160,9 +165,8 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
     result.excitation_error =
         simulate_excitation_error(problem, result.x_uncorrected, at_bounds(result.parameters, result.x_uncorrected),
                                   options.excitation_noise, options.problem.threads);
-    widen(problem, result.excitation_error, residuals, jacobian, options.statistics, result.statistics);
-    if (options.correct_bias)
-      result.x = (result.x_uncorrected - result.excitation_error.bias).cwiseMax(lower_of(result.parameters)).cwiseMin(upper_of(result.parameters));
+    widen(problem, result.excitation_error, options.correct_bias, jacobian, options.statistics, result.statistics);
+    if (options.correct_bias) result.x = result.excitation_error.x;
   }
 
   result.subject = problem.subject(result.x);
@@ -180,7 +184,7 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
   provenance["intervals"] = fmt::format(
       "95 %, Student t with {:.0f} degrees of freedom; Newey-West sandwich{}", result.statistics.degrees_of_freedom,
       options.excitation_noise.coefficient_of_variation != 0.0
-          ? fmt::format(", widened by {} refits with simulated excitation noise (CV {:.3f})",
+          ? fmt::format(", corrected score with {} simulated data sets (CV of the excitations {:.3f})",
                         result.excitation_error.replicates, options.excitation_noise.coefficient_of_variation)
           : std::string());
   add_warnings(problem, result);

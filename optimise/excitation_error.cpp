@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -90,54 +91,153 @@ double envelope_variance(const std::vector<double>& frequency_hz, const std::vec
   return variance;
 }
 
-/// One refit's Gauss-Newton steps from x, held and bounded components respected.
-bool refit(const CalibrationProblem& problem, const std::vector<bool>& fixed, int steps, VectorXd& x, double& square) {
-  Objective objective(problem);
-  const VectorXd &lower = objective.lower(), &upper = objective.upper();
-  VectorXd u = objective.scaled(x), r;
-  MatrixXd J;
-  for (int step = 0; step < steps; ++step) {
-    if (!objective.evaluate(u, r, &J)) return false;
-    if (step == 0) square = r.head(static_cast<Index>(problem.residual_count())).squaredNorm();
-    const MatrixXd A = J.transpose() * J;
-    const VectorXd g = J.transpose() * r;
-    std::vector<bool> held = fixed;
-    VectorXd p = VectorXd::Zero(u.size());
-    for (Index pass = 0; pass <= u.size(); ++pass) {
-      std::vector<Index> free;
-      for (Index j = 0; j < u.size(); ++j)
-        if (!held[static_cast<std::size_t>(j)]) free.push_back(j);
-      if (free.empty()) break;
-      const auto k = static_cast<Index>(free.size());
-      MatrixXd K(k, k);
-      VectorXd b(k);
-      for (Index a = 0; a < k; ++a) {
-        b[a] = -g[free[static_cast<std::size_t>(a)]] - A.row(free[static_cast<std::size_t>(a)]).dot(p);
-        for (Index c = 0; c < k; ++c) {
-          K(a, c) = A(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(c)]);
-          b[a] += K(a, c) * p[free[static_cast<std::size_t>(c)]];
-        }
-      }
-      // Directions the data do not see are not stepped along: pseudo-inverse.
-      const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(K);
-      VectorXd q = VectorXd::Zero(k);
-      for (Index a = 0; a < k; ++a)
-        if (eigen.eigenvalues()[a] > 1e-12 * eigen.eigenvalues()[k - 1])
-          q += eigen.eigenvectors().col(a) * (eigen.eigenvectors().col(a).dot(b) / eigen.eigenvalues()[a]);
-      bool stopped = false;
-      for (Index a = 0; a < k; ++a) {
-        const Index j = free[static_cast<std::size_t>(a)];
-        p[j] = std::clamp(q[a], lower[j] - u[j], upper[j] - u[j]);
-        if (p[j] == q[a]) continue;
-        held[static_cast<std::size_t>(j)] = true;
-        stopped = true;
-      }
-      if (!stopped) break;
+constexpr double kLeastReliability = 0.15;
+
+/// Excitations with one more dose of noise. Replicates 2i and 2i + 1 have opposite noise, so that what is odd in it cancels.
+CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, const ExcitationNoise& noise, std::size_t replicate) {
+  CalibrationProblem::Samples out = problem.excitations();
+  std::uint64_t stream = static_cast<std::uint64_t>(replicate / 2) << 20;
+  // e_observed^2 exceeds e^2 by the factor 1 + c^2 in the mean: the dose is that much smaller.
+  const double c = noise.coefficient_of_variation / std::sqrt(1.0 + std::pow(noise.coefficient_of_variation, 2));
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    for (auto& channel : out[t]) {
+      const auto eta = envelope_noise(channel.size(), problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
+      for (std::size_t i = 0; i < channel.size(); ++i) channel[i] *= 1.0 + (replicate % 2 == 0 ? c : -c) * eta[i];
     }
-    u += p;
   }
-  x = objective.unscaled(u);
-  return x.allFinite();
+  return out;
+}
+
+/// Scores and information of one data set at one point, in scaled parameters, without priors.
+struct ScoreData {
+  bool good = false;
+  VectorXd score;        ///< J'r
+  MatrixXd information;  ///< J'J
+  MatrixXd rows;         ///< J_i r_i, m x n, where wanted
+  double square = 0.0;   ///< |r|^2
+};
+
+ScoreData score_of(const CalibrationProblem& problem, const VectorXd& u, bool rows) {
+  Objective objective(problem);
+  ScoreData out;
+  VectorXd r;
+  MatrixXd J;
+  if (!objective.evaluate(u, r, &J)) return out;
+  const auto m = static_cast<Index>(problem.residual_count());
+  const VectorXd data = r.head(m);
+  const MatrixXd Jd = J.topRows(m);
+  out.good = true;
+  out.score = Jd.transpose() * data;
+  out.information = Jd.transpose() * Jd;
+  out.square = data.squaredNorm();
+  if (rows) out.rows = data.asDiagonal() * Jd;
+  return out;
+}
+
+/// The corrected score at one point.
+struct Corrected {
+  VectorXd score;             ///< priors included
+  MatrixXd H;                 ///< priors included, reliabilities limited from below
+  MatrixXd rows;              ///< corrected score by row
+  MatrixXd monte_carlo;       ///< covariance of the simulated part of the score
+  double reliability = 1.0, explained = 0.0;
+  bool limited = false;
+  std::size_t used = 0, failed = 0;
+};
+
+Corrected corrected_score(const CalibrationProblem& problem, const VectorXd& u, const VectorXd& prior_weight,
+                          const VectorXd& prior_mean, const ExcitationNoise& noise, std::size_t threads, bool rows) {
+  const auto K = static_cast<std::size_t>(noise.replicates);
+  const ScoreData base = score_of(problem, u, rows);
+  if (!base.good)
+    throw data::ConvergenceFailure({"errors in the excitation", "the model has no value at the solution", 0, 0.0, 0.0, {}});
+  const Index n = u.size();
+  Corrected out;
+  VectorXd mean_score = VectorXd::Zero(n);
+  MatrixXd mean_information = MatrixXd::Zero(n, n), mean_rows = MatrixXd::Zero(base.rows.rows(), rows ? n : 0);
+  std::vector<VectorXd> pair_scores;
+  double mean_square = 0.0;
+  // A few pairs at a time, summed in their order: the same for any number of threads, in bounded memory.
+  const std::size_t chunk = 2 * std::max<std::size_t>(1, data::thread_count(threads));
+  for (std::size_t first = 0; first < K; first += chunk) {
+    const std::size_t count = std::min(chunk, K - first);
+    std::vector<ScoreData> parts(count);
+    data::parallel_for(count, threads, [&](std::size_t i) {
+      parts[i] = score_of(problem.with_excitations(noisy_samples(problem, noise, first + i)), u, rows);
+    });
+    for (std::size_t i = 0; i + 1 < count; i += 2) {
+      if (!parts[i].good || !parts[i + 1].good) {
+        out.failed += 2;
+        continue;
+      }
+      for (const ScoreData* part : {&parts[i], &parts[i + 1]}) {
+        mean_score += part->score;
+        mean_information += part->information;
+        if (rows) mean_rows += part->rows;
+        mean_square += part->square;
+      }
+      pair_scores.push_back(0.5 * (parts[i].score + parts[i + 1].score));
+      out.used += 2;
+    }
+  }
+  if (out.used < 4)
+    throw data::ConvergenceFailure({"errors in the excitation", "fewer than two pairs of simulated data have a value",
+                                    noise.replicates, 0.0, 0.0, {}});
+  const double count = static_cast<double>(out.used), pairs = 0.5 * count;
+  mean_score /= count;
+  mean_information /= count;
+  out.score = 2.0 * base.score - mean_score + prior_weight.cwiseProduct(u - prior_mean);
+  out.explained = (mean_square / count - base.square) / static_cast<double>(problem.residual_count());
+  if (rows) out.rows = 2.0 * base.rows - mean_rows / count;
+  out.monte_carlo = MatrixXd::Zero(n, n);
+  for (const VectorXd& s : pair_scores) out.monte_carlo += (s - mean_score) * (s - mean_score).transpose() / (pairs * (pairs - 1.0));
+
+  MatrixXd H0 = base.information, H = 2.0 * base.information - mean_information;
+  H0.diagonal() += prior_weight;
+  H.diagonal() += prior_weight;
+  H0.diagonal() += VectorXd::Constant(n, 1e-12 * std::max(H0.diagonal().maxCoeff(), 1e-300));
+  const Eigen::LLT<MatrixXd> root(H0);
+  const MatrixXd L = root.matrixL();
+  const MatrixXd whitened = L.triangularView<Eigen::Lower>().solve(L.triangularView<Eigen::Lower>().solve(H).transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (whitened + whitened.transpose()));
+  out.reliability = eigen.eigenvalues().minCoeff();
+  out.limited = out.reliability < kLeastReliability;
+  const VectorXd limited = eigen.eigenvalues().cwiseMax(kLeastReliability);
+  out.H = L * eigen.eigenvectors() * limited.asDiagonal() * eigen.eigenvectors().transpose() * L.transpose();
+  return out;
+}
+
+/// Newton's step on the free parameters; those that reach a bound stop there.
+VectorXd newton_step(const MatrixXd& H, const VectorXd& score, const VectorXd& u, const VectorXd& lower, const VectorXd& upper,
+                     std::vector<bool> held) {
+  VectorXd p = VectorXd::Zero(u.size());
+  for (Index pass = 0; pass <= u.size(); ++pass) {
+    std::vector<Index> free;
+    for (Index j = 0; j < u.size(); ++j)
+      if (!held[static_cast<std::size_t>(j)]) free.push_back(j);
+    if (free.empty()) break;
+    const auto k = static_cast<Index>(free.size());
+    MatrixXd A(k, k);
+    VectorXd b(k);
+    for (Index a = 0; a < k; ++a) {
+      const Index ja = free[static_cast<std::size_t>(a)];
+      b[a] = -score[ja];
+      for (Index j = 0; j < u.size(); ++j)
+        if (held[static_cast<std::size_t>(j)]) b[a] -= H(ja, j) * p[j];
+      for (Index c = 0; c < k; ++c) A(a, c) = H(ja, free[static_cast<std::size_t>(c)]);
+    }
+    const VectorXd q = A.ldlt().solve(b);
+    bool stopped = false;
+    for (Index a = 0; a < k; ++a) {
+      const Index j = free[static_cast<std::size_t>(a)];
+      p[j] = std::clamp(q[a], lower[j] - u[j], upper[j] - u[j]);
+      if (p[j] == q[a]) continue;
+      held[static_cast<std::size_t>(j)] = true;
+      stopped = true;
+    }
+    if (!stopped) break;
+  }
+  return p;
 }
 
 }  // namespace
@@ -187,72 +287,54 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
                                                 const std::vector<bool>& fixed, const ExcitationNoise& noise,
                                                 std::size_t threads) {
   const Index n = x.size();
-  if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) || noise.replicates < 2 ||
+  if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) || noise.replicates < 4 ||
       noise.steps < 1 || !(noise.cutoff_hz > 0.0))
     throw data::InputError("out-of-range",
                            fmt::format("excitation noise: `coefficient_of_variation` {} >= 0, `cutoff_hz` {} > 0, `replicates` "
-                                       "{} >= 2 and `steps` {} >= 1 are needed",
+                                       "{} >= 4 and `steps` {} >= 1 are needed",
                                        noise.coefficient_of_variation, noise.cutoff_hz, noise.replicates, noise.steps));
-  const auto replicates = static_cast<std::size_t>(noise.replicates);
-  std::vector<VectorXd> refits(replicates);
-  std::vector<double> square(replicates, 0.0);
-  std::vector<unsigned char> good(replicates, 0);
-  const auto& samples = problem.excitations();
-  Objective base(problem);
-  VectorXd r0;
-  if (!base.evaluate(base.scaled(x), r0, nullptr))
-    throw data::ConvergenceFailure({"simulation of errors in the excitation", base.failure(), 0, 0.0, 0.0, {}});
-  const double square0 = r0.head(static_cast<Index>(problem.residual_count())).squaredNorm();
-
-  data::parallel_for(replicates, threads, [&](std::size_t k) {
-    CalibrationProblem::Samples noisy = samples;
-    std::uint64_t stream = static_cast<std::uint64_t>(k / 2) << 20;
-    for (std::size_t t = 0; t < noisy.size(); ++t) {
-      for (auto& channel : noisy[t]) {
-        // Antithetic pairs: replicate 2i + 1 has the opposite noise of 2i, so that the bias, which is even in the
-        // noise, is not blurred by its odd part.
-        const std::vector<double> eta =
-            envelope_noise(channel.size(), problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
-        const double sign = k % 2 == 0 ? noise.coefficient_of_variation : -noise.coefficient_of_variation;
-        for (std::size_t i = 0; i < channel.size(); ++i) channel[i] *= 1.0 + sign * eta[i];
-      }
-    }
-    refits[k] = x;
-    good[k] = refit(problem.with_excitations(std::move(noisy)), fixed, noise.steps, refits[k], square[k]) ? 1 : 0;
-  });
-
+  const auto& parameters = problem.parameters();
+  const VectorXd scale = scale_of(parameters), lower = lower_of(parameters).cwiseQuotient(scale),
+                 upper = upper_of(parameters).cwiseQuotient(scale);
+  VectorXd prior_weight = VectorXd::Zero(n), prior_mean = VectorXd::Zero(n);
+  for (Index j = 0; j < n; ++j) {
+    const auto& prior = parameters[static_cast<std::size_t>(j)].prior;
+    if (!prior) continue;
+    prior_weight[j] = std::pow(scale[j] / prior->standard_deviation, 2);
+    prior_mean[j] = prior->mean / scale[j];
+  }
+  VectorXd u = x.cwiseQuotient(scale);
   ExcitationErrorResult out;
-  out.bias = VectorXd::Zero(n);
-  out.covariance = MatrixXd::Zero(n, n);
-  out.bias_standard_error = VectorXd::Zero(n);
-  std::vector<std::size_t> used;
-  for (std::size_t k = 0; k < replicates; ++k) {
-    if (good[k]) used.push_back(k);
-    else ++out.failed;
+  out.converged = false;
+  for (int step = 0; step < noise.steps && !out.converged; ++step) {
+    const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, false);
+    VectorXd p = newton_step(at.H, at.score, u, lower, upper, fixed);
+    const double largest = p.lpNorm<Eigen::Infinity>();
+    if (largest > 0.5) p *= 0.5 / largest;  // half the bounds' half width at a time
+    u = (u + p).cwiseMax(lower).cwiseMin(upper);
+    out.converged = largest < 1e-3;
   }
-  out.replicates = used.size();
-  if (used.size() < 2)
-    throw data::ConvergenceFailure({"simulation of errors in the excitation", "fewer than two refits have a value",
-                                    noise.replicates, 0.0, 0.0, {}});
-  const double count = static_cast<double>(used.size());
-  for (std::size_t k : used) {
-    out.bias += (refits[k] - x) / count;
-    out.explained_variance += (square[k] - square0) / count / static_cast<double>(problem.residual_count());
-  }
-  for (std::size_t k : used) {
-    const VectorXd d = refits[k] - x - out.bias;
-    out.covariance += d * d.transpose() / (count - 1.0);
-  }
-  // Monte Carlo error of the mean over antithetic pairs.
-  VectorXd pair_square = VectorXd::Zero(n);
-  double pairs = 0.0;
-  for (std::size_t k = 0; k + 1 < replicates; k += 2) {
-    if (!good[k] || !good[k + 1]) continue;
-    const VectorXd d = 0.5 * (refits[k] + refits[k + 1]) - x - out.bias;
-    pair_square += d.cwiseAbs2();
-    pairs += 1.0;
-  }
-  if (pairs > 1.0) out.bias_standard_error = (pair_square / (pairs * (pairs - 1.0))).cwiseSqrt();
+  const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, true);
+  VectorXd residuals;
+  const VectorXd solution = u.cwiseProduct(scale).cwiseMax(lower_of(parameters)).cwiseMin(upper_of(parameters));
+  problem.evaluator()->evaluate(solution, residuals, nullptr);
+  const auto blocks = problem.blocks();
+  const ResidualCorrelation correlation = residual_correlation(residuals, blocks);
+  const double samples = static_cast<double>(residuals.size()) / correlation.inflation;
+  MatrixXd S = long_run_scores(at.rows, blocks, 2 * correlation.first_crossing) * (samples / std::max(samples - static_cast<double>(n), 1.0));
+  S.diagonal() += prior_weight;
+  const MatrixXd inverse = at.H.ldlt().solve(MatrixXd::Identity(n, n));
+  const MatrixXd monte_carlo = inverse * at.monte_carlo * inverse.transpose();
+  const MatrixXd C = inverse * S * inverse.transpose() + monte_carlo;
+  out.x = solution;
+  out.bias = x - solution;
+  out.covariance = scale.asDiagonal() * C * scale.asDiagonal();
+  out.bias_standard_error = monte_carlo.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseProduct(scale);
+  out.explained_variance = at.explained;
+  out.least_reliability = at.reliability;
+  out.limited = at.limited;
+  out.replicates = at.used;
+  out.failed = at.failed;
   return out;
 }
 

@@ -1,19 +1,24 @@
 #pragma once
-/// What noise in the excitations does to calibrated parameters: bias and spread by simulation.
+/// What noise in the excitations does to calibrated parameters, and an estimate without its bias.
 ///
-/// An envelope is a noisy estimate of the amplitude of a noise: e_observed(t) = e(t) (1 + eta(t)), with eta of
-/// coefficient of variation c and the correlation time of the low-pass. In a least-squares fit it attenuates the
-/// gains of what it multiplies, however long the trial is. Adding further noise of the same law and refitting
-/// (a simulation-extrapolation step, Cook & Stefanski 1994, doi:10.1080/01621459.1994.10476871, linear in the
-/// variance) shows bias and spread:
+/// An envelope is a noisy estimate of the amplitude of a noise: e_observed(t) = e(t) (1 + eta(t)), with eta of coefficient
+/// of variation c and the correlation time of the low-pass. Least squares then attenuates what the excitation multiplies and
+/// shifts weight between channels that resemble each other, however long the trial is. The score that the noise-free
+/// excitations would give is estimated by adding the same noise once more (corrected score, Nakamura 1990,
+/// doi:10.1093/biomet/77.1.127, its correction simulated as in Cook & Stefanski 1994,
+/// doi:10.1080/01621459.1994.10476871, but extrapolated in the score, where it is linear in the variance, not in x):
 ///
-///     bias = mean_k(x*_k) - x^,    corrected x = x^ - bias,    C_excitation = cov_k(x*_k)
+///     0 = 2 J'r - mean_k J_k'r_k + P (x - mean),    H = 2 J'J - mean_k J_k'J_k + P,    C = H^-1 (S + P) H^-1
+///
+/// with S the long-run covariance of the corrected scores. In a linear model this is the method of moments for errors in
+/// the regressors. bias = x_least_squares - x.
 ///
 /// | symbol | identifier                | unit | meaning                                                       |
 /// |--------|---------------------------|------|---------------------------------------------------------------|
 /// | c      | coefficient_of_variation  | 1    | of the envelope at constant effort                            |
-/// | B      | bandwidth_hz              | Hz   | width of the conditioned EMG's band                           |
 /// | f_c    | cutoff_hz                 | Hz   | -3 dB cut-off of the envelope's low-pass, all passes together |
+/// | k      | replicates                | 1    | simulated data sets, in pairs of opposite noise               |
+/// | J'J, H | -                         | -    | reliability: eigenvalues of H relative to J'J + P             |
 
 #include <cstdint>
 #include <vector>
@@ -26,8 +31,8 @@ namespace brachium::optimise {
 struct ExcitationNoise {
   double coefficient_of_variation = 0.0;  ///< c; 0: no noise
   double cutoff_hz = 6.0;
-  int replicates = 40;        ///< simulated data sets
-  int steps = 2;              ///< Gauss-Newton steps of each refit
+  int replicates = 20;        ///< simulated data sets
+  int steps = 6;              ///< at most that many Newton steps on the corrected score
   std::uint64_t seed = 1;
 };
 
@@ -44,15 +49,20 @@ std::vector<double> envelope_noise(std::size_t count, double rate_hz, double cut
                                    std::uint64_t stream);
 
 struct ExcitationErrorResult {
-  Eigen::VectorXd bias;                 ///< n, in the parameters' units
-  Eigen::MatrixXd covariance;           ///< n x n of the refits
-  Eigen::VectorXd bias_standard_error;  ///< Monte Carlo error of the bias
+  Eigen::VectorXd x;                    ///< n, root of the corrected score, inside the bounds
+  Eigen::VectorXd bias;                 ///< n, least squares minus x, in the parameters' units
+  Eigen::MatrixXd covariance;           ///< n x n of x
+  Eigen::VectorXd bias_standard_error;  ///< Monte Carlo error of the bias, part of the covariance
   double explained_variance = 0.0;      ///< mean square of the scaled residuals that the noise itself brings
+  double least_reliability = 1.0;       ///< smallest eigenvalue of H relative to J'J + P
+  bool limited = false;                 ///< it was below the least reliability that can be corrected for (0.15)
+  bool converged = true;
   std::size_t replicates = 0;
-  std::size_t failed = 0;               ///< refits at which the model had no value (left out)
+  std::size_t failed = 0;               ///< data sets at which the model had no value (left out)
 };
 
-/// Refits about x with simulated noise; parameters flagged in `fixed` are held, others stay inside their bounds.
+/// Starts at the least-squares solution x. Parameters flagged in `fixed` are held, others stay inside their bounds.
+/// Throws data::InputError for a noise law outside its range, data::ConvergenceFailure if the model has no value.
 ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& problem, const Eigen::VectorXd& x,
                                                 const std::vector<bool>& fixed, const ExcitationNoise& noise,
                                                 std::size_t threads = 1);

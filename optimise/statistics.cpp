@@ -28,46 +28,6 @@ double lagged(const VectorXd& r, const std::vector<ResidualBlock>& blocks, std::
   return sum;
 }
 
-struct Correlation {
-  double inflation = 1.0;
-  std::size_t crossing = 0;  ///< first lag at which the autocorrelation is not positive
-};
-
-Correlation correlation_of(const VectorXd& r, const std::vector<ResidualBlock>& blocks) {
-  Correlation out;
-  std::size_t longest = 0;
-  for (const ResidualBlock& block : blocks) longest = std::max(longest, block.count);
-  const double zero = lagged(r, blocks, 0);
-  if (!(zero > 0.0)) return out;
-  for (std::size_t lag = 1; lag < longest; ++lag) {
-    const double rho = lagged(r, blocks, lag) / zero;
-    out.crossing = lag;
-    if (!(rho > 0.0)) break;
-    out.inflation += 2.0 * rho;
-  }
-  return out;
-}
-
-/// sum over blocks of sum_|k|<=L (1 - |k|/(L+1)) G_i' G_(i+k), as the mean square of running sums over L + 1 rows.
-MatrixXd long_run_scores(const MatrixXd& G, const std::vector<ResidualBlock>& blocks, std::size_t lag) {
-  const Index n = G.cols(), window = static_cast<Index>(lag) + 1;
-  MatrixXd S = MatrixXd::Zero(n, n);
-  for (const ResidualBlock& block : blocks) {
-    const auto first = static_cast<Index>(block.first), count = static_cast<Index>(block.count);
-    MatrixXd sums = MatrixXd::Zero(count + window - 1, n);
-    for (Index j = 0; j < n; ++j) {
-      double running = 0.0;
-      for (Index t = 0; t < sums.rows(); ++t) {
-        if (t < count) running += G(first + t, j);
-        if (t >= window) running -= G(first + t - window, j);
-        sums(t, j) = running;
-      }
-    }
-    S.noalias() += sums.transpose() * sums / static_cast<double>(window);
-  }
-  return S;
-}
-
 WeakDirection direction(const std::vector<Parameter>& parameters, VectorXd v, double relative) {
   WeakDirection weak;
   weak.relative_singular_value = relative;
@@ -91,6 +51,41 @@ WeakDirection direction(const std::vector<Parameter>& parameters, VectorXd v, do
 }
 
 }  // namespace
+
+ResidualCorrelation residual_correlation(const VectorXd& r, const std::vector<ResidualBlock>& blocks) {
+  ResidualCorrelation out;
+  std::size_t longest = 0;
+  for (const ResidualBlock& block : blocks) longest = std::max(longest, block.count);
+  const double zero = lagged(r, blocks, 0);
+  if (!(zero > 0.0)) return out;
+  for (std::size_t lag = 1; lag < longest; ++lag) {
+    const double rho = lagged(r, blocks, lag) / zero;
+    out.first_crossing = lag;
+    if (!(rho > 0.0)) break;
+    out.inflation += 2.0 * rho;
+  }
+  return out;
+}
+
+// As the mean square of running sums over lag + 1 rows: the cost does not grow with the lag.
+MatrixXd long_run_scores(const MatrixXd& G, const std::vector<ResidualBlock>& blocks, std::size_t lag) {
+  const Index n = G.cols(), window = static_cast<Index>(lag) + 1;
+  MatrixXd S = MatrixXd::Zero(n, n);
+  for (const ResidualBlock& block : blocks) {
+    const auto first = static_cast<Index>(block.first), count = static_cast<Index>(block.count);
+    MatrixXd sums = MatrixXd::Zero(count + window - 1, n);
+    for (Index j = 0; j < n; ++j) {
+      double running = 0.0;
+      for (Index t = 0; t < sums.rows(); ++t) {
+        if (t < count) running += G(first + t, j);
+        if (t >= window) running -= G(first + t - window, j);
+        sums(t, j) = running;
+      }
+    }
+    S.noalias() += sums.transpose() * sums / static_cast<double>(window);
+  }
+  return S;
+}
 
 void describe_covariance(const std::vector<Parameter>& parameters, const MatrixXd& jacobian,
                          const StatisticsOptions& options, FitStatistics& out) {
@@ -147,7 +142,7 @@ FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const Vec
     throw data::InputError("wrong-size", fmt::format("{} residuals and {} parameters do not fit a {} x {} Jacobian", m, n,
                                                      jacobian.rows(), jacobian.cols()));
   FitStatistics out;
-  const Correlation correlation = correlation_of(residuals, blocks);
+  const ResidualCorrelation correlation = residual_correlation(residuals, blocks);
   out.inflation = correlation.inflation;
   out.effective_samples = static_cast<double>(m) / out.inflation;
   out.degrees_of_freedom = std::max(out.effective_samples - static_cast<double>(n), 0.0);
@@ -164,7 +159,7 @@ FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const Vec
   MatrixXd H = information;
   H.diagonal() += prior;
 
-  const std::size_t lag = options.max_lag > 0 ? options.max_lag : 2 * correlation.crossing;
+  const std::size_t lag = options.max_lag > 0 ? options.max_lag : 2 * correlation.first_crossing;
   const MatrixXd G = residuals.asDiagonal() * Js;
   const double small_sample = out.effective_samples / std::max(out.degrees_of_freedom, 1.0);
   MatrixXd S = long_run_scores(G, blocks, lag) * small_sample;

@@ -71,6 +71,16 @@ FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const Eig
                              const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian,
                              const std::vector<ResidualBlock>& blocks, const StatisticsOptions& options = {});
 
+/// How far residuals are correlated inside their blocks.
+struct ResidualCorrelation {
+  double inflation = 1.0;          ///< tau
+  std::size_t first_crossing = 0;  ///< first lag at which the autocorrelation is not positive
+};
+ResidualCorrelation residual_correlation(const Eigen::VectorXd& residuals, const std::vector<ResidualBlock>& blocks);
+
+/// sum over blocks and lags |k| <= lag of (1 - |k| / (lag + 1)) G_i' G_(i+k), with G the scores by row (m x n).
+Eigen::MatrixXd long_run_scores(const Eigen::MatrixXd& scores, const std::vector<ResidualBlock>& blocks, std::size_t lag);
+
 /// Standard errors, correlated pairs and weak directions of a covariance (in the parameters' units) as above, for when
 /// another source of error has been added to it. `jacobian` as in fit_statistics.
 void describe_covariance(const std::vector<Parameter>& parameters, const Eigen::MatrixXd& jacobian,

@@ -122,7 +122,6 @@ inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t
   calibration.excitation_noise.coefficient_of_variation = stochastic_cv(electrode);
   calibration.excitation_noise.cutoff_hz = 6.0;
   calibration.excitation_noise.replicates = replicates;
-  calibration.excitation_noise.steps = 2;
   calibration.correct_bias = correct;
   StochasticOutcome out;
   out.result = calibrate(scene, trials, calibration);
