@@ -4,6 +4,12 @@ namespace brachium::pipelines {
 
 Catalogue built_in_catalogue() {
   Catalogue catalogue;
+  add_session_stages(catalogue);
+  add_emg_stages(catalogue);
+  add_limb_stages(catalogue);
+  add_hill_stages(catalogue);
+  add_optimise_stages(catalogue);
+  add_compare_stages(catalogue);
   return catalogue;
 }
 

@@ -271,8 +271,8 @@ void add_limb_inverse_dynamics(Catalogue& catalogue) {
                   choice_option("quaternion", "segment_to_world", {"segment_to_world", "world_to_segment"}, "what the quaternion turns into what"),
                   long_axis,
                   up,
-                  text_option("elbow_point", "elbow", "elbow joint centre: signals <name>_x, _y, _z"),
-                  texts_option("distal_points", {"radial_styloid", "ulnar_styloid"}, "points whose mean is the forearm's distal end"),
+                  text_option("elbow_point", "elbow_position", "elbow joint centre: signals <name>_x, _y, _z"),
+                  texts_option("distal_points", {"radial_styloid_position", "ulnar_styloid_position"}, "points whose mean is the forearm's distal end"),
                   flag_option("elbow_acceleration", true, "take the acceleration of the elbow into account, where it is recorded"),
                   number_option("lowpass_hz", "Hz", 3.0, above(0), "low-pass of the motion before it is differentiated"),
                   number_option("agreement_deg", "deg", 10.0, above(0), "orientation and points that differ by more (rms) give a warning")};
