@@ -58,13 +58,18 @@ void ProgressPrinter::stage_ends(const StageRecord& stage, const std::vector<dat
     if (stage.status == StageStatus::reused)
       out_ << fmt::format("  {} reused: {}\n", stage.name, stage.reason);
   }
-  if (stage.status != StageStatus::failed) {  // what ended the run is told at its end
-    for (const data::Diagnostic& d : findings) {
-      if (d.severity != data::Severity::note && (!quiet_ || d.severity == data::Severity::error))
-        out_ << data::render(d);
-    }
-  }
+  if (stage.status != StageStatus::failed) show(findings);  // what ended the run is told at its end
   out_ << std::flush;
+}
+
+void ProgressPrinter::show(const std::vector<data::Diagnostic>& findings) {
+  constexpr std::size_t most = 5;  // per stage; all of them are in the report and the log
+  std::size_t count = 0;
+  for (const data::Diagnostic& d : findings) {
+    if (d.severity == data::Severity::note || (quiet_ && d.severity == data::Severity::warning)) continue;
+    if (++count <= most) out_ << data::render(d);
+  }
+  if (count > most) out_ << fmt::format("  and {} more, see the report\n", count - most);
 }
 
 void ProgressPrinter::message(const std::string& text) {

@@ -22,6 +22,7 @@ class ProgressPrinter final : public RunObserver {
  private:
   using Clock = std::chrono::steady_clock;
   void clear();
+  void show(const std::vector<data::Diagnostic>& findings);
 
   std::ostream& out_;
   const bool terminal_, quiet_;

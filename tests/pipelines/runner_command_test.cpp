@@ -110,29 +110,38 @@ TEST_F(CommandTest, QuietRunsAreQuietAndOthersSayWhy) {
 }
 
 TEST(ErrorCodes, EveryCodeInTheSourcesIsExplained) {
+  // Codes are kebab-case; every such text in the sources is one, but for these. Codes of one word stand as
+  // arguments of InputError or beside a severity.
+  const std::set<std::string> others{"brachium-session", "brachium-subject", "ft-lb", "multi-start"};
   const std::vector<std::regex> patterns{
+      std::regex(R"rx("([a-z0-9]+(?:-[a-z0-9]+)+)")rx"),
       std::regex(R"rx(InputError[({]\s*"([a-z0-9]+(?:-[a-z0-9]+)*)")rx"),
-      std::regex(R"rx(Severity::(?:error|warning|note),\s*"([a-z0-9]+(?:-[a-z0-9]+)*)")rx"),
-      std::regex(
-          R"rx((?:error|warning|warn|note|fail|refuse|mistake|complain)\(\s*(?:[A-Za-z_.&*>-]+,\s*)?"([a-z0-9]+(?:-[a-z0-9]+)+)")rx")};
+      std::regex(R"rx(Severity::(?:error|warning|note),\s*"([a-z0-9]+(?:-[a-z0-9]+)*)")rx")};
+  const std::regex trial_name("(ramp|hold|sweep|curl|random|mvc)-[0-9]+");
   std::set<std::string> unexplained;
   std::size_t found = 0;
   for (const char* folder : {"data", "emg", "hill", "optimise", "pipelines"}) {
     for (const auto& entry : fs::recursive_directory_iterator(brachium::tests::source_dir() / folder)) {
-      if (entry.path().extension() != ".cpp") continue;
+      const std::string path = entry.path().generic_string();
+      // The report's names are those of HTML and style sheets.
+      if (entry.path().extension() != ".cpp" || path.find("/pipelines/report/") != std::string::npos)
+        continue;
       const std::string text = file_text(entry.path());
       for (const std::regex& pattern : patterns) {
         for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) {
           ++found;
           const std::string code = (*match)[1];
-          if (!explain_error(code) && code != "error" && code != "warning" && code != "note")
-            unexplained.insert(code + " in " + entry.path().filename().string());
+          const bool severity =
+              code == "error" || code == "warning" || code == "note";  // names of the severities
+          if (severity || others.contains(code) || std::regex_match(code, trial_name) || explain_error(code))
+            continue;
+          unexplained.insert(code + " in " + entry.path().filename().string());
         }
       }
     }
   }
   EXPECT_GT(found, 100u);
-  EXPECT_THAT(unexplained, ::testing::IsEmpty());
+  EXPECT_THAT(unexplained, ::testing::IsEmpty()) << "add a sentence to pipelines/error_code_list.cpp";
 }
 
 TEST(ErrorCodes, AreSortedAndUnique) {
