@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "pipelines/report/build.hpp"
+#include "pipelines/report/findings.hpp"
 #include "pipelines/report_study.hpp"
 #include "pipelines/version.hpp"
 
@@ -68,10 +69,8 @@ void add_findings(const RunResult& result, const RunData& data, report::Document
   for (const StageRecord& record : result.stages) {
     const auto found = data.find(record.name);
     if (found == data.end()) continue;
-    for (Diagnostic d : found->second.diagnostics) {  // a copy: the stage's name is added
-      d.message = fmt::format("`{}`: {}", record.name, d.message);
-      document.findings.push_back(report::make_finding(d));
-    }
+    for (report::Paragraph& finding : report::make_findings(record.name, found->second.diagnostics))
+      document.findings.push_back(std::move(finding));
   }
 }
 
@@ -170,14 +169,15 @@ void add_provenance(const RunResult& result, report::Document& document) {
   if (!result.command_line.empty())
     add("command line", fmt::format("{}", fmt::join(result.command_line, " ")));
   add("run folder", result.folder.string());
-  add("started", result.started);
+  if (!result.started.empty()) add("started", result.started);  // a report drawn again knows the end alone
   add("ended", result.ended);
   for (const auto& [file, digest] : result.files)
     add("SHA-256 of " + std::filesystem::path(file).filename().string(), digest);
   for (const StageRecord& s : result.stages) {
-    add("stage " + s.name, fmt::format("{}: {}{}{}", to_string(s.status), s.reason,
-                                       s.seconds > 0.0 ? fmt::format("; {:.2f} s", s.seconds) : "",
-                                       s.started.empty() ? "" : "; computed " + s.started));
+    add("stage " + s.name,
+        fmt::format("{}{}{}{}", to_string(s.status), s.reason.empty() ? "" : fmt::format(" ({})", s.reason),
+                    s.started.empty() ? "" : ", computed " + s.started,
+                    s.seconds > 0.0 ? " in " + report::duration(s.seconds) : ""));
   }
 }
 
@@ -213,6 +213,7 @@ report::Document assemble_report(const RunResult& result, const RunData& data) {
   }
   if (document.verdict.empty()) document.verdict = fmt::format("{} stages done", result.stages.size());
   add_findings(result, data, document);
+  add_assumptions(data, document);
   for (const StageRecord& record : result.stages) {
     document.chain.push_back({record.name, record.run, record.seconds, to_string(record.status),
                               tone_of_status(record, data), record.reads});

@@ -10,6 +10,9 @@ namespace brachium::pipelines {
 std::string study_subtitle(const RunResult& result, const RunData& data);
 
 /// Chapters "Recordings" and "Scene", as far as the pipeline has them.
+/// What the recordings' description assumes, as warnings before all others of that weight.
+void add_assumptions(const RunData& data, report::Document& document);
+
 void add_study_sections(const Definition& definition, const RunData& data, report::Document& document);
 
 }  // namespace brachium::pipelines

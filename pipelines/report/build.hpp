@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,7 +38,9 @@ Tone threshold_tone(double value, double good, double bad);
 struct GridOptions {
   int digits = 4;                              ///< significant digits of numbers
   std::map<std::string, int> column_digits{};  ///< by column name, where they differ
-  std::map<std::string, std::string> names{};  ///< shown instead of the column's name
+  std::map<std::string, int> decimals{};       ///< by column name: a fixed number of decimals instead
+  std::set<std::string> words{};               ///< text columns of option names, shown in words
+  std::map<std::string, std::string> names{};  ///< shown instead of the column's name (its words)
   std::map<std::string, std::string> units{};  ///< shown in another unit of the same dimension
   std::map<std::string, std::function<Tone(double)>> number_tone{};            ///< by column name
   std::map<std::string, std::function<Tone(const std::string&)>> text_tone{};  ///< by column name
@@ -45,8 +48,8 @@ struct GridOptions {
   bool verdicts = true;                ///< verdict_tone on text columns without a rule
 };
 
-/// A data table as a grid; units go to the header: "RMSE [N m]".
-/// Throws InputError("missing-column") for a column that the table does not have.
+/// A data table as a grid; names in words, units in the header: "rmse_N_m" is "RMSE [N m]"; captions start
+/// with a capital. Throws InputError("missing-column") for a column that the table does not have.
 Grid make_grid(const data::Table& table, const GridOptions& options = {});
 
 // ---------------------------------------------------------------- plots

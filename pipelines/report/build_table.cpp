@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "data/model/units.hpp"
 #include "pipelines/report/build.hpp"
+#include "pipelines/report/text.hpp"
 
 namespace brachium::pipelines::report {
 namespace {
@@ -37,8 +39,10 @@ std::vector<Cell> number_cells(const data::Column& column, const GridOptions& op
   const bool whole = !own && all_integers(values);
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::string text =
-        whole ? fixed(values[i], 0) : significant(values[i], own ? *own : options.digits);
+    const int* decimals = find(options.decimals, column.name);
+    const std::string text = decimals ? fixed(values[i], *decimals)
+                             : whole  ? fixed(values[i], 0)
+                                      : significant(values[i], own ? *own : options.digits);
     cells.push_back({.text = text, .tone = tones[i], .numeric = true});
   }
   return cells;
@@ -48,9 +52,10 @@ std::vector<Cell> text_cells(const data::Column& column, const GridOptions& opti
   const auto* rule = find(options.text_tone, column.name);
   std::vector<Cell> cells;
   for (const std::string& text : std::get<std::vector<std::string>>(column.values)) {
-    cells.push_back(make_text_cell(text, rule               ? (*rule)(text)
-                                         : options.verdicts ? verdict_tone(text)
-                                                            : Tone::plain));
+    const std::string shown = options.words.contains(column.name) ? in_words(text) : text;
+    cells.push_back(make_text_cell(shown, rule               ? (*rule)(text)
+                                          : options.verdicts ? verdict_tone(text)
+                                                             : Tone::plain));
   }
   return cells;
 }
@@ -58,9 +63,13 @@ std::vector<Cell> text_cells(const data::Column& column, const GridOptions& opti
 std::string heading(const data::Column& column, const GridOptions& options) {
   const std::string* name = find(options.names, column.name);
   const std::string* unit = find(options.units, column.name);
-  const std::string shown = name ? *name : column.name;
   const std::string& symbol = unit ? *unit : column.unit;
-  return symbol.empty() || symbol == "1" ? shown : shown + " [" + symbol + "]";
+  if (!name) {
+    // The name's own ending says the stored unit; a table of mixed units says none.
+    const std::string plain = label_of_name(column.name, column.unit == "mixed" ? "1" : column.unit);
+    return unit ? plain.substr(0, plain.rfind(" [")) + " [" + *unit + "]" : plain;
+  }
+  return symbol.empty() || symbol == "1" || symbol == "mixed" ? *name : *name + " [" + symbol + "]";
 }
 
 }  // namespace
@@ -73,6 +82,8 @@ Grid make_grid(const data::Table& table, const GridOptions& options) {
     for (const std::string& name : options.columns) columns.push_back(&table.column(name));
   }
   Grid grid{.caption = table.title};
+  if (!grid.caption.empty())
+    grid.caption[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(grid.caption[0])));
   grid.rows.resize(columns.empty() ? 0 : table.rows());
   for (const data::Column* column : columns) {
     grid.header.push_back(heading(*column, options));

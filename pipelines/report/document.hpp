@@ -16,6 +16,7 @@ enum class Tone { plain, good, warning, bad };
 struct Paragraph {
   std::string text{};
   Tone tone = Tone::plain;
+  std::vector<std::string> details{};  ///< of a finding: lines folded away under it
 };
 
 struct Cell {

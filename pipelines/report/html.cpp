@@ -21,6 +21,14 @@ constexpr double kPageWidth = 1052.0;  // [px] of the text, see style.cpp
 constexpr double kColumnGap = 26.0;
 constexpr std::size_t kFewNotes = 6;  // more are folded away
 
+/// Lines that a reader opens when the finding's own sentence is not enough.
+std::string folded(const std::vector<std::string>& lines) {
+  if (lines.empty()) return "";
+  std::string out = "<details class=\"more\"><summary>one by one</summary><ul>";
+  for (const std::string& line : lines) out += "<li>" + inline_markup(line) + "</li>";
+  return out + "</ul></details>";
+}
+
 /// Writes one page; anchors are unique within it.
 class Page {
  public:
@@ -85,7 +93,7 @@ void Page::findings(const std::vector<Paragraph>& findings) {
       if (finding.tone != tone) continue;
       ++count;
       items += "<li class=\"" + tone_class(tone) + "\"><b>" + word + "</b><span>" +
-               inline_markup(finding.text) + "</span></li>\n";
+               inline_markup(finding.text) + folded(finding.details) + "</span></li>\n";
     }
     if (count == 0) return count;
     const bool fold = count > kFewNotes && (tone == Tone::plain || tone == Tone::good);

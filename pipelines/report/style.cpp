@@ -49,10 +49,11 @@ tbody th{font-weight:500}
 tbody tr:hover{background:var(--raised)}
 td code,th code{white-space:nowrap}
 .w{min-width:15em}
+td:not(.w),tbody th:not(.w){white-space:nowrap}
 .n{text-align:right;white-space:nowrap}
 td.good,th.good{color:var(--good)}td.warning,tbody th.warning{color:var(--warning);background:var(--warning-bg);font-weight:600}
 td.bad,tbody th.bad{color:var(--bad);background:var(--bad-bg);font-weight:700}
-.prov th{width:1%;white-space:nowrap;color:var(--soft)}.prov td{overflow-wrap:anywhere}
+.prov tbody th{width:1%;white-space:nowrap;color:var(--soft)}.prov tbody td{white-space:normal;overflow-wrap:anywhere}
 .row{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,var(--w)),1fr));gap:18px 26px;margin:14px 0;align-items:start}
 .rowlegend{grid-column:1/-1;margin-bottom:-12px}
 figure{margin:0;min-width:0}
@@ -68,7 +69,7 @@ svg.plot text.good{fill:var(--good)}svg.plot text.warning{fill:var(--warning)}sv
 .panel *,.k *{vector-effect:non-scaling-stroke}
 .ground{fill:none;pointer-events:all}
 .grid{stroke:var(--grid);fill:none}.zero{stroke:var(--axis);fill:none;stroke-width:.8}.frame{stroke:var(--axis);fill:none;stroke-width:1.6}
-.l{fill:none;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}.l.dense{stroke-width:1;stroke-opacity:.6}
+.l{fill:none;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}.l.dense{stroke-width:1.1;stroke-opacity:.85}
 .d{stroke-dasharray:7 4;stroke-linecap:butt}.r{stroke-dasharray:2 3}
 .p{fill:none;stroke-width:4;stroke-linecap:round;stroke-opacity:.6}.p.many{stroke-width:2.6}.a{fill-opacity:.75}.b{fill-opacity:.25}.a,.b{stroke-width:.6}
 .c0{stroke:var(--c0)}.c1{stroke:var(--c1)}.c2{stroke:var(--c2)}.c3{stroke:var(--c3)}.c4{stroke:var(--c4)}.c5{stroke:var(--c5)}.c6{stroke:var(--c6)}.c7{stroke:var(--c7)}
@@ -88,12 +89,14 @@ svg.chain{display:block;margin:0 auto;max-width:100%;height:auto;min-width:var(-
 .edge{fill:none;stroke:var(--axis);stroke-width:1.4}.head{fill:var(--axis)}
 details{margin:12px 0;border:1px solid var(--line);border-radius:8px;padding:0 16px}
 summary{cursor:pointer;padding:9px 0;font-weight:600}details[open]{padding-bottom:12px}
+.more{border:0;padding:0;margin:4px 0 0;font-size:13.5px}.more summary{padding:2px 0;font-weight:400;color:var(--soft)}
+.findings .more ul{margin:2px 0 4px;padding-left:20px}.findings .more li{display:list-item;padding:0;margin:1px 0;background:none;border:0}
 .methods p{hyphens:auto}
 .hidden{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%);white-space:nowrap}
 #probe{position:fixed;z-index:2;pointer-events:none;background:var(--ink);color:var(--ground);font-size:12px;line-height:1.4;
 padding:2px 7px;border-radius:4px;font-variant-numeric:tabular-nums;display:none}
 @media(max-width:600px){body{padding:18px 14px 48px;font-size:15px}h1{font-size:23px}h2{font-size:19px}.verdict{font-size:16px;padding:12px 14px}
-.findings li{grid-template-columns:1fr;gap:0}th,td{padding:4px 8px}.prov th{white-space:normal}}
+.findings li{grid-template-columns:1fr;gap:0}th,td{padding:4px 8px}.prov tbody th{white-space:normal}}
 @media print{@page{margin:15mm 14mm}
 body{max-width:none;padding:0;font-size:10.5pt;-webkit-print-color-adjust:exact;print-color-adjust:exact}
 h1{font-size:19pt}h2{font-size:14pt;margin-top:22pt}h3{font-size:12pt}

@@ -3,6 +3,7 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <utility>
 
 namespace brachium::pipelines::report {
 namespace {
@@ -59,6 +60,16 @@ std::string link(std::string_view address_prefix, std::string_view target, std::
     }
   }
   return "<a href=\"" + std::string(address_prefix) + escape(href) + "\">" + escape(shown) + "</a>";
+}
+
+/// "R2" as a word of its own is the coefficient of determination.
+std::string square_of_r(std::string text) {
+  for (std::size_t at = text.find("R2"); at != std::string::npos; at = text.find("R2", at + 1)) {
+    const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    if ((at > 0 && is_word(text[at - 1])) || (at + 2 < text.size() && is_word(text[at + 2]))) continue;
+    text.replace(at, 2, "R²");
+  }
+  return text;
 }
 
 }  // namespace
@@ -130,7 +141,9 @@ std::string bind_units(std::string_view text) {
 std::string inline_markup(std::string_view text) {
   std::string out;
   std::size_t plain = 0;  // start of the text not yet written
-  const auto flush = [&](std::size_t end) { out += escape(bind_units(text.substr(plain, end - plain))); };
+  const auto flush = [&](std::size_t end) {
+    out += escape(square_of_r(bind_units(text.substr(plain, end - plain))));
+  };
   for (std::size_t i = 0; i < text.size();) {
     const bool word_start = i == 0 || !std::isalnum(static_cast<unsigned char>(text[i - 1]));
     if (text[i] == '`') {
@@ -196,6 +209,65 @@ std::string typeset_label(std::string_view label) {
   const std::string_view unit = label.substr(open + 1, label.size() - open - 2);
   if (unit == "1") return std::string(label.substr(0, open > 0 ? open - 1 : 0));
   return std::string(label.substr(0, open)) + "[" + typeset_unit(unit) + "]";
+}
+
+std::string in_words(std::string_view name) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWritten = {
+      {{"r2", "R²"},
+       {"rmse", "RMSE"},
+       {"nrmse", "NRMSE"},
+       {"rms", "RMS"},
+       {"snr", "SNR"},
+       {"emg", "EMG"},
+       {"mvc", "MVC"},
+       {"db", "dB"},
+       {"hz", "Hz"}}};
+  std::string out;
+  while (!name.empty()) {
+    const std::size_t end = name.find('_');
+    std::string_view word = name.substr(0, end);
+    for (const auto& [plain, written] : kWritten) {
+      if (word == plain) word = written;
+    }
+    if (!out.empty() && !word.empty()) out += ' ';
+    out += word;
+    name = end == std::string_view::npos ? std::string_view() : name.substr(end + 1);
+  }
+  return out;
+}
+
+std::string label_of_name(std::string_view name, std::string_view unit) {
+  // Longer endings first: "_kg_m" before "_m".
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kEndings = {
+      {{"_kg_m2", "kg m^2"},
+       {"_kg_m", "kg m"},
+       {"_N_m", "N m"},
+       {"_rad_s", "rad/s"},
+       {"_deg_s", "deg/s"},
+       {"_m_s", "m/s"},
+       {"_kg", "kg"},
+       {"_rad", "rad"},
+       {"_deg", "deg"},
+       {"_Hz", "Hz"},
+       {"_hz", "Hz"},
+       {"_db", "dB"},
+       {"_dB", "dB"},
+       {"_uV", "uV"},
+       {"_V", "V"},
+       {"_N", "N"},
+       {"_m", "m"},
+       {"_s", "s"}}};
+  std::string_view words = name;
+  std::string_view found;
+  for (const auto& [ending, symbol] : kEndings) {
+    // A table states its units: "_m" at the end of a name without one means something else.
+    if (!name.ends_with(ending) || unit == "1") continue;
+    words = name.substr(0, name.size() - ending.size());
+    found = symbol;
+    break;
+  }
+  if (!unit.empty()) found = unit == "1" ? "" : unit;
+  return in_words(words) + (found.empty() ? "" : " [" + std::string(found) + "]");
 }
 
 std::string plain_text(std::string_view text) {

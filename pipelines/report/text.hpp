@@ -32,4 +32,11 @@ std::string plain_text(std::string_view text);
 /// A name for links: lower case letters, digits and hyphens; never empty.
 std::string make_anchor(std::string_view title);
 
+/// A name in words, its unit (if the name ends in it, or in the one given) in brackets: "rmse_N_m" -> "RMSE
+/// [N m]", "load_mass_kg" -> "load mass [kg]", "tendon_slack_length_factor" -> "tendon slack length factor".
+std::string label_of_name(std::string_view name, std::string_view unit = "");
+
+/// Underscores as spaces, the abbreviations of the field as they are written: "r2" -> "R²".
+std::string in_words(std::string_view name);
+
 }  // namespace brachium::pipelines::report

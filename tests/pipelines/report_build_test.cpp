@@ -79,7 +79,7 @@ TEST(ReportBuild, ATableKeepsItsUnitsAndCountsHaveNoDecimals) {
   const Grid grid = make_grid(
       table(), {.digits = 3, .names = {{"slack_length", "slack length"}}, .units = {{"slack_length", "mm"}}});
   EXPECT_EQ(grid.header,
-            (std::vector<std::string>{"muscle", "rmse [N m]", "frames", "slack length [mm]", "verdict"}));
+            (std::vector<std::string>{"muscle", "RMSE [N m]", "frames", "slack length [mm]", "verdict"}));
   EXPECT_EQ(grid.rows[0][1].text, "1.02");
   EXPECT_EQ(grid.rows[1][1].text, "–");
   EXPECT_EQ(grid.rows[1][2].text, "6000");
