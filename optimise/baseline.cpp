@@ -91,8 +91,18 @@ Frames frames_of(const BaselineSpec& spec, const CalibrationTrial& trial, double
       break;
     }
   }
-  out.features.resize(n, static_cast<Index>(columns.size()));
-  for (std::size_t j = 0; j < columns.size(); ++j) out.features.col(static_cast<Index>(j)) = columns[j];
+  std::vector<Index> kept;
+  for (Index i = 0; i < n; ++i) {
+    if (trial.use.empty() || trial.use[span.first_row + static_cast<std::size_t>(i)]) kept.push_back(i);
+  }
+  out.features.resize(static_cast<Index>(kept.size()), static_cast<Index>(columns.size()));
+  for (std::size_t j = 0; j < columns.size(); ++j) out.features.col(static_cast<Index>(j)) = columns[j](kept);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    out.time_s[k] = out.time_s[static_cast<std::size_t>(kept[k])];
+    out.reference[k] = out.reference[static_cast<std::size_t>(kept[k])];
+  }
+  out.time_s.resize(kept.size());
+  out.reference.resize(kept.size());
   return out;
 }
 

@@ -54,15 +54,6 @@ void order_pairs(const std::vector<Parameter>& parameters, VectorXd& x) {
   }
 }
 
-std::vector<bool> at_bounds(const std::vector<Parameter>& parameters, const VectorXd& x) {
-  std::vector<bool> out;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const double width = parameters[j].upper - parameters[j].lower, value = x[static_cast<Index>(j)];
-    out.push_back(value - parameters[j].lower <= 1e-6 * width || parameters[j].upper - value <= 1e-6 * width);
-  }
-  return out;
-}
-
 /// The covariance under noise in the excitation takes the sandwich's place; no standard error becomes smaller by it. Where
 /// the bias is not taken off, it counts as an error.
 void widen(const CalibrationProblem& problem, const ExcitationErrorResult& error, bool corrected, const MatrixXd& jacobian,
@@ -163,7 +154,7 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
   result.excitation_error.bias = VectorXd::Zero(n);
   if (options.excitation_noise.coefficient_of_variation != 0.0) {
     result.excitation_error =
-        simulate_excitation_error(problem, result.x_uncorrected, at_bounds(result.parameters, result.x_uncorrected),
+        simulate_excitation_error(problem, result.x_uncorrected, std::vector<bool>(static_cast<std::size_t>(n), false),
                                   options.excitation_noise, options.problem.threads);
     widen(problem, result.excitation_error, options.correct_bias, jacobian, options.statistics, result.statistics);
     if (options.correct_bias) result.x = result.excitation_error.x;
@@ -172,7 +163,7 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
   result.subject = problem.subject(result.x);
   result.subject.name = options.subject_name;
   result.subject.verdicts = verdicts({&result.parameters, result.x, result.x_uncorrected, result.excitation_error.bias,
-                                      &result.statistics});
+                                      &result.statistics, problem.gain_strength_pairs()});
   add_metrics(problem, result);
   std::string names;
   for (const CalibrationTrial& trial : trials) names += (names.empty() ? "" : ", ") + trial.name;

@@ -335,7 +335,15 @@ CalibrationProblem CalibrationProblem::with_excitations(Samples samples) const {
 
 std::vector<ResidualBlock> CalibrationProblem::blocks() const {
   std::vector<ResidualBlock> out;
-  for (const auto& trial : impl_->chain->trials) out.push_back({trial->name, trial->first_row, trial->rows.size()});
+  // A gap in a trial's rows ends a block: correlation is sought inside, never across.
+  for (const auto& trial : impl_->chain->trials) {
+    for (std::size_t i = 0; i < trial->rows.size(); ++i) {
+      if (i == 0 || trial->rows[i] - trial->rows[i - 1] != impl_->chain->options.decimate) {
+        out.push_back({trial->name, trial->first_row + i, 0});
+      }
+      ++out.back().count;
+    }
+  }
   return out;
 }
 
@@ -402,6 +410,24 @@ std::vector<std::size_t> CalibrationProblem::strength_parameters() const {
   std::vector<std::size_t> out;
   for (std::size_t j = 0; j < parameters().size(); ++j)
     if (parameters()[j].name == "strength") out.push_back(j);
+  return out;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> CalibrationProblem::gain_strength_pairs() const {
+  const Chain& chain = *impl_->chain;
+  const auto drives = [&](const std::vector<Target>& gains, const std::vector<Target>& strengths) {
+    for (const Target& gain : gains)
+      for (const Target& strength : strengths)
+        if (gain.quantity == Quantity::gain && strength.quantity == Quantity::strength &&
+            chain.weights(static_cast<Eigen::Index>(strength.index), static_cast<Eigen::Index>(gain.index)) != 0.0)
+          return true;
+    return false;
+  };
+  std::vector<std::pair<std::size_t, std::size_t>> out;
+  for (std::size_t g = 0; g < parameters().size(); ++g)
+    for (std::size_t s = 0; s < parameters().size(); ++s)
+      if (!parameters()[g].prior && !parameters()[s].prior && drives(chain.free.targets[g], chain.free.targets[s]))
+        out.emplace_back(g, s);
   return out;
 }
 

@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "data/model/scene.hpp"
@@ -35,6 +36,9 @@ struct CalibrationTrial {
   data::Signal angle;                     ///< [rad]
   std::optional<data::Signal> velocity;   ///< [rad/s]; from the angle (cubic spline) if absent
   data::Signal moment;                    ///< reference moment at the joint [N m]
+  /// Which of the moment's samples are to be compared (a dynamometer's constant velocity, a hinge axis that is known);
+  /// as long as the moment, or empty: all.
+  std::vector<bool> use;
 };
 
 /// A trial's first signals of quantity excitation, joint_angle, joint_velocity and joint_moment (of the given
@@ -100,6 +104,7 @@ struct TrialWindow {
   double first_time_s = 0.0, last_time_s = 0.0;
   std::size_t used = 0;            ///< reference samples that became residuals
   std::size_t before = 0, after = 0;  ///< reference samples outside the window, by end
+  std::size_t masked = 0;             ///< reference samples inside it that `use` leaves out
   std::size_t above_one = 0;       ///< excitation samples above 1, all channels, at starting gains
   std::size_t below_zero = 0;      ///< and below 0, as zero-lag filters leave them
 };
@@ -152,6 +157,9 @@ class CalibrationProblem final : public LeastSquaresProblem {
   data::Subject subject(const Eigen::VectorXd& x) const;
   /// Indices of the strength parameters: the moment is linear in them.
   std::vector<std::size_t> strength_parameters() const;
+  /// Free gains and free strengths of muscles they drive, neither with a prior (indices of parameters): what the data fix
+  /// without a maximal contraction is their product; what tells them apart is only the model's curvature.
+  std::vector<std::pair<std::size_t, std::size_t>> gain_strength_pairs() const;
   /// The same trials with other excitations on the same grids: for studies of errors in the excitation.
   /// samples[trial][channel], channels in the order of channels().
   using Samples = std::vector<std::vector<std::vector<double>>>;

@@ -102,7 +102,11 @@ CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, con
   for (std::size_t t = 0; t < out.size(); ++t) {
     for (auto& channel : out[t]) {
       const auto eta = envelope_noise(channel.size(), problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
-      for (std::size_t i = 0; i < channel.size(); ++i) channel[i] *= 1.0 + (replicate % 2 == 0 ? c : -c) * eta[i];
+      for (std::size_t i = 0; i < channel.size(); ++i) {
+        const double e = std::abs(channel[i]), f = noise.floor;
+        const double deviation = f > 0.0 ? (e * e + f * f) / std::max(e, f) : e;
+        channel[i] += (replicate % 2 == 0 ? c : -c) * deviation * eta[i];
+      }
     }
   }
   return out;
@@ -242,6 +246,27 @@ VectorXd newton_step(const MatrixXd& H, const VectorXd& score, const VectorXd& u
 
 }  // namespace
 
+std::vector<double> without_noise_floor(std::vector<double> envelope, double floor) {
+  if (!(floor >= 0.0) || !std::isfinite(floor))
+    throw data::InputError("out-of-range", fmt::format("noise floor {} must not be negative", floor));
+  for (double& value : envelope) value = std::sqrt(std::max(value * value - floor * floor, 0.0));
+  return envelope;
+}
+
+double effective_noise_floor(double floor, const std::vector<double>& emg_power, const std::vector<double>& noise_power) {
+  if (emg_power.size() != noise_power.size() || emg_power.empty())
+    throw data::InputError("wrong-size", "the spectra of EMG and sensor noise must be given on the same frequencies");
+  double e = 0.0, n = 0.0, ee = 0.0, en = 0.0;
+  for (std::size_t i = 0; i < emg_power.size(); ++i) {
+    e += emg_power[i];
+    n += noise_power[i];
+    ee += emg_power[i] * emg_power[i];
+    en += emg_power[i] * noise_power[i];
+  }
+  if (!(ee > 0.0) || !(n > 0.0)) throw data::InputError("out-of-range", "a spectrum without power has no noise floor");
+  return floor * std::sqrt(en * e / (ee * n));
+}
+
 double envelope_coefficient_of_variation(const std::vector<double>& frequency_hz, const std::vector<double>& power,
                                          double cutoff_hz) {
   if (frequency_hz.size() < 2 || frequency_hz.size() != power.size() || !(cutoff_hz > 0.0))
@@ -287,12 +312,13 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
                                                 const std::vector<bool>& fixed, const ExcitationNoise& noise,
                                                 std::size_t threads) {
   const Index n = x.size();
-  if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) || noise.replicates < 4 ||
+  if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) || !(noise.floor >= 0.0) ||
+      !(noise.coefficient_uncertainty >= 0.0) || noise.replicates < 4 ||
       noise.steps < 1 || !(noise.cutoff_hz > 0.0))
     throw data::InputError("out-of-range",
-                           fmt::format("excitation noise: `coefficient_of_variation` {} >= 0, `cutoff_hz` {} > 0, `replicates` "
+                           fmt::format("excitation noise: `coefficient_of_variation` {} >= 0, `floor` {} >= 0, `cutoff_hz` {} > 0, `replicates` "
                                        "{} >= 4 and `steps` {} >= 1 are needed",
-                                       noise.coefficient_of_variation, noise.cutoff_hz, noise.replicates, noise.steps));
+                                       noise.coefficient_of_variation, noise.floor, noise.cutoff_hz, noise.replicates, noise.steps));
   const auto& parameters = problem.parameters();
   const VectorXd scale = scale_of(parameters), lower = lower_of(parameters).cwiseQuotient(scale),
                  upper = upper_of(parameters).cwiseQuotient(scale);
@@ -308,11 +334,14 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
   out.converged = false;
   for (int step = 0; step < noise.steps && !out.converged; ++step) {
     const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, false);
-    VectorXd p = newton_step(at.H, at.score, u, lower, upper, fixed);
+    std::vector<bool> held = fixed;
+    for (Index j = 0; j < n; ++j)  // at a bound, and pushed outward
+      if ((u[j] <= lower[j] && at.score[j] > 0.0) || (u[j] >= upper[j] && at.score[j] < 0.0)) held[static_cast<std::size_t>(j)] = true;
+    VectorXd p = newton_step(at.H, at.score, u, lower, upper, held);
     const double largest = p.lpNorm<Eigen::Infinity>();
     if (largest > 0.5) p *= 0.5 / largest;  // half the bounds' half width at a time
     u = (u + p).cwiseMax(lower).cwiseMin(upper);
-    out.converged = largest < 1e-3;
+    out.converged = largest < 5e-3;
   }
   const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, true);
   VectorXd residuals;
@@ -329,6 +358,7 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
   out.x = solution;
   out.bias = x - solution;
   out.covariance = scale.asDiagonal() * C * scale.asDiagonal();
+  out.covariance += std::pow(2.0 * noise.coefficient_uncertainty, 2) * out.bias * out.bias.transpose();
   out.bias_standard_error = monte_carlo.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseProduct(scale);
   out.explained_variance = at.explained;
   out.least_reliability = at.reliability;

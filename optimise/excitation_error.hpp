@@ -30,11 +30,24 @@ namespace brachium::optimise {
 /// The law of the noise in an envelope.
 struct ExcitationNoise {
   double coefficient_of_variation = 0.0;  ///< c; 0: no noise
+  /// How well c is known, relative: real EMG is not the Gaussian noise c is computed from. The bias goes with c^2, so twice
+  /// this share of it counts as an error.
+  double coefficient_uncertainty = 0.15;
+  /// Where sensor noise has been taken off in the mean square (without_noise_floor), what is left varies more at low effort:
+  /// sd(e) = c (e^2 + floor^2) / max(e, floor), with the effective floor in units of excitation. 0: sd(e) = c e.
+  double floor = 0.0;
   double cutoff_hz = 6.0;
   int replicates = 20;        ///< simulated data sets
   int steps = 6;              ///< at most that many Newton steps on the corrected score
   std::uint64_t seed = 1;
 };
+
+/// sqrt(max(e^2 - floor^2, 0)): an envelope without the share of sensor noise, floor being the envelope at rest.
+std::vector<double> without_noise_floor(std::vector<double> envelope, double floor);
+
+/// The floor that matters for ExcitationNoise: sensor noise adds to the envelope's fluctuation only as far as its spectrum
+/// overlaps that of the EMG, floor^2 (int P_e P_n / (int P_e int P_n)) / (int P_e^2 / (int P_e)^2). Spectra on one grid.
+double effective_noise_floor(double floor, const std::vector<double>& emg_power, const std::vector<double>& noise_power);
 
 /// c of the linear envelope (full-wave rectified, zero-lag 4th-order Butterworth low-pass with -3 dB at cutoff_hz) of
 /// Gaussian noise whose power spectrum is given on equally spaced frequencies: the autocovariance of |x|,

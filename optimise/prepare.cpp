@@ -10,6 +10,10 @@
 namespace brachium::optimise {
 
 UsableSpan usable_span(const CalibrationTrial& trial, double edge_s) {
+  if (!trial.use.empty() && trial.use.size() != trial.moment.samples.size()) {
+    throw data::InputError("wrong-size", fmt::format("trial `{}`: {} samples of the moment, {} marks of use", trial.name,
+                                                     trial.moment.samples.size(), trial.use.size()));
+  }
   double from = trial.moment.info.start_time_s, to = trial.moment.info.end_time_s();
   const auto narrow = [&](const data::Signal& signal) {
     from = std::max(from, signal.info.start_time_s);
@@ -126,8 +130,18 @@ std::shared_ptr<PreparedTrial> prepare_trial(const CalibrationTrial& trial, cons
     out->to_frames = Resampling(info, out->frame_time_s);
   }
   for (std::size_t i = span.first_row; i <= span.last_row; i += chain.options.decimate) {
+    if (!trial.use.empty() && !trial.use[i]) {
+      ++out->window.masked;
+      continue;
+    }
     out->rows.push_back(i - span.first_frame);
     out->reference.push_back(trial.moment.samples[i]);
+  }
+  if (out->rows.size() < 8) {
+    throw data::InputError("empty-window",
+                           fmt::format("trial `{}`: {} frames are left to compare, {} are marked as not to be used",
+                                       trial.name, out->rows.size(), out->window.masked),
+                           "see what marked them in the stage that made the moment, or leave the trial out");
   }
   out->window.name = trial.name;
   out->window.first_time_s = trial.moment.info.time_s(span.first_row);

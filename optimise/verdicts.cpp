@@ -82,6 +82,13 @@ std::vector<data::ParameterVerdict> verdicts(const VerdictInput& input) {
       if (std::find(weak.parameters.begin(), weak.parameters.end(), parameters[j].label()) != weak.parameters.end())
         append(out[j].remark, "hardly determined along: " + weak.text);
   }
+  for (const auto& [gain, strength] : input.gain_strength) {
+    for (const auto& [one, other] : {std::pair{gain, strength}, std::pair{strength, gain}}) {
+      out[one].verdict = "NOT IDENTIFIED";
+      append(out[one].remark, fmt::format("one parameter with {}: without a maximal contraction or a prior only their product is known",
+                                          parameters[other].label()));
+    }
+  }
   for (const auto& [a, b] : exchangeable_pairs(parameters)) {
     append(out[a].remark, fmt::format("interchangeable with {}: the pair is determined, not which is which", parameters[b].name));
     append(out[b].remark, fmt::format("interchangeable with {}: the pair is determined, not which is which", parameters[a].name));

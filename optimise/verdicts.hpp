@@ -2,6 +2,7 @@
 /// From a fit and its statistics to one plain verdict per parameter.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "data/model/subject.hpp"
@@ -16,12 +17,14 @@ struct VerdictInput {
   Eigen::VectorXd x_uncorrected;    ///< the least-squares solution: bounds are judged here
   Eigen::VectorXd bias;             ///< 0 where not estimated
   const FitStatistics* statistics = nullptr;
+  std::vector<std::pair<std::size_t, std::size_t>> gain_strength;  ///< CalibrationProblem::gain_strength_pairs()
 };
 
 /// One verdict a parameter:
 ///   AT LOWER BOUND / AT UPPER BOUND  within 1e-6 of the bounds' width
 ///   NOT IDENTIFIED                   no finite standard error (a direction the data do not see), a 95 % interval wider
-///                                    than the bounds, or a posterior that is no narrower than 0.9 of its prior
+///                                    than the bounds, a posterior that is no narrower than 0.9 of its prior, or a gain
+///                                    free together with a strength it drives, neither with a prior
 ///   identified                       otherwise
 /// Remarks name correlations, combinations, what a prior decides, and parameters that may swap.
 std::vector<data::ParameterVerdict> verdicts(const VerdictInput& input);

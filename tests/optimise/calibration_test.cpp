@@ -124,12 +124,12 @@ TEST(Calibration, NamesGainAndStrengthAsOneWithoutAnMvc) {
   const CalibrationResult result = calibrate(elbow(), exact_trials(twin), options);
   const auto& strength = verdict(result.subject, "biceps", "strength");
   const auto& gain = verdict(result.subject, "biceps", "gain");
-  EXPECT_NE(strength.remark.find("with biceps gain"), std::string::npos) << verdict_text(result.subject);
-  EXPECT_NE(gain.remark.find("with biceps strength"), std::string::npos) << verdict_text(result.subject);
-  for (const auto& v : result.subject.verdicts) {
-    const double truth = v.parameter == "gain" ? twin.channel_gains.at(v.muscle) : 1.0;
-    EXPECT_TRUE(v.verdict != "identified" || (v.interval_lower < truth && truth < v.interval_upper)) << verdict_text(result.subject);
-  }
+  EXPECT_NE(strength.remark.find("one parameter with biceps gain: without a maximal contraction or a prior only their product is known"),
+            std::string::npos) << verdict_text(result.subject);
+  EXPECT_NE(gain.remark.find("one parameter with biceps strength"), std::string::npos) << verdict_text(result.subject);
+  EXPECT_NEAR(strength.fitted * gain.fitted, 2.0, 0.2);
+  EXPECT_EQ(strength.verdict, "NOT IDENTIFIED") << verdict_text(result.subject);
+  EXPECT_EQ(gain.verdict, "NOT IDENTIFIED") << verdict_text(result.subject);
 }
 
 TEST(Calibration, ReportsABoundThatIsHit) {
@@ -187,23 +187,26 @@ TEST(Calibration, SubjectPredictsWhatTheCalibrationModelled) {
 TEST(StochasticTwin, IntervalsCoverTheTruthOverTenSeeds) {
   const data::Scene scene = elbow();
   int covered = 0, total = 0;
-  double bias = 0.0, largest_noise_bias = 0.0;
+  double error = 0.0, uncorrected = 0.0, stated = 0.0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const tests::StochasticOutcome out = tests::stochastic_seed(scene, seed, 12);
+    const tests::StochasticOutcome out = tests::stochastic_seed(scene, seed, 6);
     for (std::size_t j = 0; j < out.result.subject.verdicts.size(); ++j) {
       const auto& v = out.result.subject.verdicts[j];
       const double truth = out.truth[static_cast<Eigen::Index>(j)];
       ++total;
       covered += v.interval_lower <= truth && truth <= v.interval_upper ? 1 : 0;
-      if (v.parameter == "strength") {
-        bias += (v.fitted - truth) / 40.0;
-        largest_noise_bias = std::max(largest_noise_bias, std::abs(v.bias));
+      if (v.muscle == "biceps" && v.parameter == "strength") {
+        error += (v.fitted - truth) / 10.0;
+        uncorrected += (out.result.x_uncorrected[static_cast<Eigen::Index>(j)] - truth) / 10.0;
+        stated += v.bias / 10.0;
       }
     }
   }
   EXPECT_GE(covered, static_cast<int>(0.9 * total)) << covered << " of " << total;
-  EXPECT_GT(largest_noise_bias, 0.005);  // it is there, and it is reported
-  EXPECT_LT(std::abs(bias), 0.03);
+  // Least squares are off by a fifth; most of it is stated, and taken off.
+  EXPECT_LT(uncorrected, -0.15);
+  EXPECT_LT(stated, -0.10);
+  EXPECT_LT(std::abs(error), 0.5 * std::abs(uncorrected));
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth, 
     emg::OutputLayout layout;
     data::Signal s = signal;
     s.samples = envelope(emg::synthesise_emg(signal.samples, signal.info.rate_hz, own).raw, layout);
-    for (double& v : s.samples) v = std::sqrt(std::max(std::pow(v / unit, 2) - floor * floor, 0.0));
+    for (double& v : s.samples) v /= unit;
+    s.samples = without_noise_floor(std::move(s.samples), floor);
     s.info.rate_hz = rate_hz;
     s.info.start_time_s = signal.info.start_time_s + layout.start_shift_s;
     s.info.count = s.samples.size();
@@ -65,16 +66,30 @@ inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth, 
   return out;
 }
 
-/// Coefficient of variation of these envelopes: the electrode's spectrum after the 30 Hz high-pass.
-inline double stochastic_cv(const emg::SyntheticEmgOptions& o) {
-  std::vector<double> f, p;
-  for (int i = 0; i < 430; ++i) {
-    const double x = o.band_low_hz + i + 0.5, r = 30.0 / x * std::pow(std::sqrt(2.0) - 1.0, 0.25);
+/// The law of these envelopes' noise: the electrode's spectrum, and white sensor noise, after the 30 Hz high-pass.
+inline ExcitationNoise stochastic_noise(const emg::SyntheticEmgOptions& o) {
+  std::vector<double> f, emg_power, noise_power;
+  double emg_before = 0.0, emg_after = 0.0, noise_before = 0.0, noise_after = 0.0;
+  for (int i = 0; i < static_cast<int>(0.5 * o.rate_hz); ++i) {
+    const double x = i + 0.5, r = 30.0 / x * std::pow(std::sqrt(2.0) - 1.0, 0.25), high_pass = std::pow(1.0 + std::pow(r, 4), -2);
+    const bool in_band = x > o.band_low_hz && x < o.band_high_hz;
+    const double spectrum = in_band ? x * x / ((x * x + o.spectrum_low_hz * o.spectrum_low_hz) *
+                                               std::pow(x * x + o.spectrum_high_hz * o.spectrum_high_hz, 2))
+                                    : 0.0;
     f.push_back(x);
-    p.push_back(x * x / ((x * x + o.spectrum_low_hz * o.spectrum_low_hz) * std::pow(x * x + o.spectrum_high_hz * o.spectrum_high_hz, 2)) *
-                std::pow(1.0 + std::pow(r, 4), -2));
+    emg_power.push_back(spectrum * high_pass);
+    noise_power.push_back(high_pass);
+    emg_before += spectrum;
+    emg_after += spectrum * high_pass;
+    noise_before += 1.0;
+    noise_after += high_pass;
   }
-  return envelope_coefficient_of_variation(f, p, 6.0);
+  ExcitationNoise noise;
+  noise.coefficient_of_variation = envelope_coefficient_of_variation(f, emg_power, 6.0);
+  const double floor = std::pow(10.0, -*o.snr_db / 20.0) * std::sqrt(noise_after / noise_before * emg_before / emg_after);
+  noise.floor = effective_noise_floor(floor, emg_power, noise_power);
+  noise.cutoff_hz = 6.0;
+  return noise;
 }
 
 struct StochasticOutcome {
@@ -119,8 +134,7 @@ inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t
   }
   calibration.problem.edge_s = 0.25;
   calibration.problem.decimate = 2;
-  calibration.excitation_noise.coefficient_of_variation = stochastic_cv(electrode);
-  calibration.excitation_noise.cutoff_hz = 6.0;
+  calibration.excitation_noise = stochastic_noise(electrode);
   calibration.excitation_noise.replicates = replicates;
   calibration.correct_bias = correct;
   StochasticOutcome out;
