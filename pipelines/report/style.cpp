@@ -48,7 +48,7 @@ thead th{font-weight:600;color:var(--soft);border-bottom:2px solid var(--line);v
 tbody th{font-weight:500}
 tbody tr:hover{background:var(--raised)}
 td code,th code{white-space:nowrap}
-.w{min-width:15em}
+.w{min-width:10.5em}
 td:not(.w),tbody th:not(.w){white-space:nowrap}
 .n{text-align:right;white-space:nowrap}
 td.good,th.good{color:var(--good)}td.warning,tbody th.warning{color:var(--warning);background:var(--warning-bg);font-weight:600}

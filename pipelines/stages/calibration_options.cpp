@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cctype>
+#include <cmath>
+
 #include "optimise/excitation_error.hpp"
+#include "pipelines/report/text.hpp"
 #include "pipelines/stages/common.hpp"
 #include "pipelines/stages/model_options.hpp"
 
@@ -170,13 +174,45 @@ void add_calibration_tables(const optimise::CalibrationResult& result, StageOutp
   out.attributes["summary"] = result.summary.message();
 }
 
+report::Grid verdict_grid(const data::Table& verdicts) {
+  const auto text = [&](const char* column, std::size_t row) { return verdicts.texts(column)[row]; };
+  const auto number = [&](const char* column, std::size_t row) { return report::significant(verdicts.numbers(column)[row], 3); };
+  report::Grid grid;
+  grid.caption = verdicts.title;
+  grid.header = {"of", "parameter", "start", "fitted", "bounds", "95 % interval", "verdict", "remark"};
+  for (std::size_t i = 0; i < verdicts.rows(); ++i) {
+    const std::string verdict = text("verdict", i), unit = text("unit", i), owner = text("owner", i);
+    const bool known = std::isfinite(verdicts.numbers("standard_error")[i]);
+    const auto cell = [](std::string shown) { return report::Cell{.text = std::move(shown), .numeric = true}; };
+    grid.rows.push_back({report::make_text_cell(owner == "*" ? "all" : owner), report::make_text_cell(report::typeset_label(report::label_of_name(text("parameter", i), unit))),
+                         cell(number("start", i)), cell(number("fitted", i)), cell(number("lower", i) + " to " + number("upper", i)),
+                         cell(known ? number("interval_lower", i) + " to " + number("interval_upper", i) : "unknown"), report::make_text_cell(verdict, report::verdict_tone(verdict)),
+                         report::make_text_cell(text("remark", i))});
+  }
+  return grid;
+}
+
+/// How the fit ended, in a sentence: the solver's reason, and by how much it lowered the cost.
+report::Paragraph outcome_paragraph(const StageData& output, const std::string& summary) {
+  const bool converged = summary.starts_with("converged");
+  std::string text = summary.substr(0, summary.find(';'));
+  if (const auto found = output.tables.find("iterations"); found != output.tables.end() && found->second.rows() > 1) {
+    const std::vector<double>& cost = found->second.numbers("cost");
+    text += fmt::format("; {} iterations lowered the cost (half the sum of squared weighted residuals and priors) from {} to {}", static_cast<long>(found->second.numbers("iteration").back()),
+                        report::significant(cost.front(), 3), report::significant(cost.back(), 3));
+  }
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return {text + ".", converged ? report::Tone::plain : report::Tone::warning};
+}
+
 void add_calibration_report(const StageData& output, report::Section& section) {
-  if (const auto summary = output.attributes.find("summary"); summary != output.attributes.end()) section.blocks.push_back(report::Paragraph{summary->second});
-  report::GridOptions verdicts;
-  verdicts.digits = 4;
-  section.blocks.push_back(report::make_grid(output.tables.at("verdicts"), verdicts));
+  section.title += ": calibration";
+  if (const auto summary = output.attributes.find("summary"); summary != output.attributes.end()) section.blocks.push_back(outcome_paragraph(output, summary->second));
+  section.blocks.push_back(verdict_grid(output.tables.at("verdicts")));
   report::GridOptions training;
   training.digits = 3;
+  training.names = {{"nrmse_range", "NRMSE of the range"}, {"first_s", "from"}, {"last_s", "to"}, {"left_out", "frames left out"}};
+  training.decimals = {{"first_s", 2}, {"last_s", 2}};
   section.blocks.push_back(report::make_grid(output.tables.at("training"), training));
   report::PlotRow plots;
   plots.min_width_px = 420.0;

@@ -14,6 +14,8 @@ optimise::CalibrationOptions calibration_options(const StageContext& context, co
 
 /// Tables of one fit: verdicts, metrics by trial, windows, iterations.
 void add_calibration_tables(const optimise::CalibrationResult& result, StageOutput& out);
+/// Verdicts as a reader wants them: fitted value beside its bounds and interval, the verdict in its colour.
+report::Grid verdict_grid(const data::Table& verdicts);
 void add_calibration_report(const StageData& output, report::Section& section);
 std::string calibration_methods(const ReportContext& context);
 

@@ -190,7 +190,18 @@ report::PlotRow trial_plots(const data::SessionSource& source, const std::vector
     if (signals.empty()) continue;
     std::vector<const data::Signal*> pointers;
     for (const data::Signal& s : signals) pointers.push_back(&s);
-    row.plots.push_back(report::make_time_plot(name, what, pointers, unit));
+    report::Plot plot = report::make_time_plot(name, what, pointers, unit.empty() && signals.front().info.unit == "V" ? "µV" : unit);
+    for (std::size_t s = 0; s < plot.series.size(); ++s) plot.series[s].colour = static_cast<int>(s % 8);
+    // Muscles that share an excitation lie on one another: one line with all their names.
+    for (std::size_t s = 0; s < plot.series.size(); ++s) {
+      for (std::size_t k = plot.series.size(); --k > s;) {
+        if (plot.series[k].y != plot.series[s].y || plot.series[k].x != plot.series[s].x) continue;
+        plot.series[s].label += ", " + plot.series[k].label;
+        plot.series.erase(plot.series.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    }
+    if (plot.series.size() == 1) plot.series.front().label.clear();  // the axis says what it is
+    row.plots.push_back(std::move(plot));
   }
   return row;
 }

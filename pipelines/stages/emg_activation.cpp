@@ -97,6 +97,7 @@ void run(const StageContext& context, StageOutput& out) {
 void fill(const ReportContext& context, report::Section& section) {
   std::vector<std::string> trials;
   for (const data::TrialInfo& trial : context.output->signals->info().trials) trials.push_back(trial.name);
+  section.title += ": muscle activations";
   section.blocks.push_back(trial_plots(*context.output->signals, trials, data::Quantity::activation, "activation"));
   if (context.output->tables.contains("above_one")) section.blocks.push_back(report::make_grid(context.output->tables.at("above_one")));
 }

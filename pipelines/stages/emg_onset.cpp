@@ -57,9 +57,13 @@ void run(const StageContext& context, StageOutput& out) {
 
 void fill(const ReportContext& context, report::Section& section) {
   report::GridOptions grid;
-  grid.digits = 4;
+  section.title += ": onsets of activity";
+  grid.columns = {"trial", "channel", "from_s", "to_s", "bursts"};
+  grid.names = {{"from_s", "baseline from"}, {"to_s", "baseline to"}, {"onset_s", "onset"}, {"offset_s", "offset"}, {"bursts", "bursts found"}};
+  grid.decimals = {{"from_s", 2}, {"to_s", 2}, {"onset_s", 3}, {"offset_s", 3}};
   section.blocks.push_back(report::make_grid(context.output->tables.at("baselines"), grid));
   report::Section folded;
+  grid.columns = {"trial", "channel", "onset_s", "offset_s", "remark"};
   folded.blocks.push_back(report::make_grid(context.output->tables.at("bursts"), grid));
   section.blocks.push_back(report::Details{fmt::format("all {} bursts", context.output->tables.at("bursts").rows()), {folded}});
 }

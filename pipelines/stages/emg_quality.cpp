@@ -94,17 +94,21 @@ void run(const StageContext& context, StageOutput& out) {
 
 void fill(const ReportContext& context, report::Section& section) {
   section.blocks.push_back(report::Paragraph{
-      "Measures of every channel in every trial; the last column says what stands against using it."});
+      "Measures of every channel in every trial, as shares of the samples, of the power (line frequency) or of the EMG's RMS (baseline drift)."});
   report::GridOptions grid;
   grid.digits = 3;
-  grid.units = {{"mean_V", "µV"}, {"rms_V", "µV"}};
+  grid.decimals = {{"snr_db", 1}, {"median_hz", 0}, {"line_ratio", 3}, {"baseline_drift", 2}};
+  grid.column_digits = {{"clipped_fraction", 2}, {"dropout_fraction", 2}};
+  grid.names = {{"snr_db", "SNR"}, {"line_ratio", "line power"}, {"median_hz", "median frequency"}, {"clipped_fraction", "clipped"}, {"dropout_fraction", "dropouts"}};
+  grid.columns = {"trial", "channel", "verdict", "snr_db", "line_ratio", "median_hz", "clipped_fraction", "dropout_fraction", "baseline_drift", "reasons"};
+  section.title += ": EMG quality";
   section.blocks.push_back(report::make_grid(context.output->tables.at("quality"), grid));
 }
 
 std::string methods(const ReportContext& context) {
   return fmt::format("Every EMG channel was checked for clipping, dropouts, a flat line, power at the line frequency (limit {:.0f} % of the power), "
                      "signal-to-noise ratio between activity and rest (limit {:.0f} dB), baseline drift and median frequency (Welch 1967, doi:10.1109/TAU.1967.1161901; "
-                     "plausible range {:.0f}-{:.0f} Hz).",
+                     "plausible range {:.0f} to {:.0f} Hz).",
                      100.0 * context.options->number("line_ratio"), context.options->number("snr_db"), context.options->number("median_low_hz"),
                      context.options->number("median_high_hz"));
 }

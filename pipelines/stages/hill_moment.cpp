@@ -187,11 +187,14 @@ void fill(const ReportContext& context, report::Section& section) {
   const StageData& output = *context.output;
   std::vector<std::string> trials;
   for (const data::TrialInfo& trial : output.signals->info().trials) trials.push_back(trial.name);
+  section.title += ": muscle forces";
   section.blocks.push_back(report::Paragraph{"Tension along each tendon."});
   section.blocks.push_back(trial_plots(*output.signals, trials, Quantity::muscle_force, "force"));
   report::GridOptions grid;
   grid.digits = 3;
   report::Section folded;
+  grid.names = {{"active_share", "active share of the force"}, {"shortest_fibre_norm", "shortest fibre [l0]"}, {"longest_fibre_norm", "longest fibre [l0]"}};
+  grid.decimals = {{"peak_force_N", 0}, {"mean_moment_N_m", 2}, {"active_share", 2}, {"shortest_fibre_norm", 2}, {"longest_fibre_norm", 2}};
   folded.blocks.push_back(report::make_grid(output.tables.at("muscles"), grid));
   section.blocks.push_back(report::Details{"figures of every muscle and trial", {folded}});
 }

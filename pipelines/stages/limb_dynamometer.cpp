@@ -164,6 +164,11 @@ void fill(const ReportContext& context, report::Section& section) {
   const StageData& output = *context.output;
   report::GridOptions grid;
   grid.digits = 3;
+  grid.names = {{"largest_N_m", "largest"}, {"rms_gravity_N_m", "RMS of gravity"}, {"rms_inertial_N_m", "RMS of inertia"}, {"rms_sd_N_m", "standard uncertainty"},
+                {"share_used", "share used"}, {"cos_N_m", "cosine"}, {"sin_N_m", "sine"}, {"offset_N_m", "offset"}, {"rms_residual_N_m", "RMS residual"},
+                {"worst_residual_N_m", "worst residual"}, {"worst_angle_rad", "at angle"}};
+  grid.units = {{"worst_angle_rad", "deg"}};
+  section.title += ": reference moment";
   if (output.tables.contains("gravity")) section.blocks.push_back(report::make_grid(output.tables.at("gravity"), grid));
   section.blocks.push_back(report::make_grid(output.tables.at("moment"), grid));
   std::vector<std::string> trials;

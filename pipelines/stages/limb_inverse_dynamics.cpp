@@ -202,9 +202,12 @@ void fill(const ReportContext& context, report::Section& section) {
   const StageData& output = *context.output;
   std::string text = "The reference moment was not measured: it comes from inverse dynamics of forearm, hand and load. Motion: " + output.attributes.at("origin") + ".";
   if (const auto mass = output.attributes.find("body_mass"); mass != output.attributes.end()) text += " Body mass: " + mass->second + ".";
+  section.title += ": reference moment";
   section.blocks.push_back(report::Paragraph{text, report::Tone::warning});
   report::GridOptions grid;
   grid.digits = 3;
+  grid.names = {{"first_moment_kg_m", "mass × distance"}, {"inertia_kg_m2", "inertia"}, {"mean_N_m", "mean"}, {"largest_N_m", "largest"}, {"rms_inertial_N_m", "RMS of inertia"},
+                {"rms_sd_N_m", "standard uncertainty"}, {"share_used", "share used"}, {"orientation_against_points", "orientation against points"}};
   section.blocks.push_back(report::make_grid(output.tables.at("moment"), grid));
   report::PlotRow plots;
   plots.min_width_px = 320.0;
@@ -239,8 +242,11 @@ std::string methods(const ReportContext& context) {
     for (const data::Segment& s : context.scene->segments) parts.push_back(fmt::format("{} {:.3f} kg at {:.3f} m ({})", s.name, s.mass_kg, s.centre_of_mass_m, s.source));
     for (const data::Load& l : context.scene->loads) parts.push_back(fmt::format("{} at {:.3f} m ({})", l.name, l.distance_m, l.source));
   }
-  return fmt::format("The elbow moment was computed by inverse dynamics of {} (Winter 2009), with motion low-pass filtered at {:g} Hz; the uncertainty of masses and lengths was propagated to first order.",
-                     fmt::join(parts, "; "), context.options->number("lowpass_hz"));
+  const bool mass = context.scene && context.scene->body_mass_kg > 0.0;
+  return fmt::format("The joint moment was computed by inverse dynamics (Winter 2009, doi:10.1002/9780470549148) with motion low-pass filtered at {:g} Hz{}. What was moved: {}. The uncertainty of "
+                     "masses and lengths was propagated to first order.",
+                     context.options->number("lowpass_hz"), mass ? fmt::format(", for a body mass of {:g} kg ({})", context.scene->body_mass_kg, context.scene->body_mass_source) : "",
+                     fmt::join(parts, "; "));
 }
 
 }  // namespace

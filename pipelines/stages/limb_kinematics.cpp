@@ -101,7 +101,9 @@ void fill(const ReportContext& context, report::Section& section) {
   grid.digits = 3;
   grid.units = {{"lowest_rad", "deg"}, {"highest_rad", "deg"}, {"fastest_rad_s", "deg/s"}};
   grid.names = {{"lowest_rad", "lowest"}, {"highest_rad", "highest"}, {"fastest_rad_s", "fastest"}};
-  section.blocks.push_back(report::make_grid(context.output->tables.at("ranges"), grid));
+  grid.decimals = {{"lowest_rad", 1}, {"highest_rad", 1}, {"fastest_rad_s", 0}};
+  section.title += ": joint angles";
+  section.blocks.emplace_back(report::make_grid(context.output->tables.at("ranges"), grid));
   std::vector<std::string> trials;
   for (const data::TrialInfo& trial : context.output->signals->info().trials) trials.push_back(trial.name);
   section.blocks.push_back(trial_plots(*context.output->signals, trials, data::Quantity::joint_angle, "joint angle", "deg"));
@@ -109,7 +111,7 @@ void fill(const ReportContext& context, report::Section& section) {
 
 std::string methods(const ReportContext& context) {
   const double cutoff = context.options->number("lowpass_hz");
-  return cutoff > 0.0 ? fmt::format("Joint angles were low-pass filtered at {:g} Hz (Butterworth, effective order 4, no lag; Winter 2009) and differentiated by central differences of fourth order.", cutoff)
+  return cutoff > 0.0 ? fmt::format("Joint angles were low-pass filtered at {:g} Hz (Butterworth, effective order 4, no lag; Winter 2009, doi:10.1002/9780470549148) and differentiated by central differences of fourth order.", cutoff)
                       : std::string("Joint angles were used as recorded and differentiated by central differences of fourth order.");
 }
 

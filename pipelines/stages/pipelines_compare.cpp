@@ -57,6 +57,7 @@ void run(const StageContext& context, StageOutput& out) {
   scores.text("model").text("trial").text("seen_in_calibration").number("frames", "1").number("rmse_N_m", "N m").number("nrmse_range", "1").number("r2", "1").number("bias_N_m", "N m")
       .number("largest_N_m", "N m");
   std::vector<std::string> lines;
+  std::size_t judged_trials = 0;
   for (const StageData* model : models) {
     std::vector<std::vector<double>> unseen_reference, unseen_model, all_reference, all_model;
     for (const std::string& name : context.trials) {
@@ -81,19 +82,23 @@ void run(const StageContext& context, StageOutput& out) {
     const optimise::Metrics pooled = judged ? optimise::pooled_metrics(unseen_reference, unseen_model) : optimise::pooled_metrics(all_reference, all_model);
     scores.row({model->stage, std::string(judged ? "all unseen trials" : "all trials"), std::string(judged ? "no" : "yes"), static_cast<double>(pooled.count), pooled.rmse,
                 pooled.nrmse_range.value_or(0.0), pooled.r2.value_or(0.0), pooled.bias, pooled.max_absolute_error});
+    if (judged) judged_trials = unseen_reference.size();
     lines.push_back(fmt::format("`{}` R2 {:.3f}, RMSE {:.2f} N m ({:.1f} % of the range){}", model->stage, pooled.r2.value_or(0.0), pooled.rmse, 100.0 * pooled.nrmse_range.value_or(0.0),
                                 judged ? "" : ", on trials the calibration has seen"));
   }
   out.tables["scores"] = scores.take();
-  out.attributes["verdict"] = fmt::format("Against `{}`: {}.", reference.stage, fmt::join(lines, "; "));
+  out.attributes["verdict"] = fmt::format("{}gainst `{}`: {}.", judged_trials == 0 ? "A" : fmt::format("On {} trial{} the calibration never saw, a", judged_trials, judged_trials == 1 ? "" : "s"),
+                                          reference.stage, fmt::join(lines, "; "));
   out.attributes["verdict_tone"] = "plain";
 }
 
 void fill(const ReportContext& context, report::Section& section) {
   const StageData& output = *context.output;
+  section.title += ": modelled against measured";
   section.blocks.push_back(report::Paragraph{output.attributes.at("verdict")});
   report::GridOptions grid;
   grid.digits = 3;
+  grid.names = {{"seen_in_calibration", "seen in calibration"}, {"nrmse_range", "NRMSE of the range"}, {"bias_N_m", "bias"}, {"largest_N_m", "largest error"}};
   section.blocks.push_back(report::make_grid(output.tables.at("scores"), grid));
   report::PlotRow plots;
   plots.min_width_px = 420.0;
@@ -112,6 +117,11 @@ void fill(const ReportContext& context, report::Section& section) {
   section.blocks.push_back(plots);
 }
 
+std::string methods(const ReportContext&) {
+  return "Modelled and reference moments were compared frame by frame on the reference's time stamps: root mean square error, the same over the range of the reference, and the coefficient of "
+         "determination R2 = 1 - (sum of squared errors) / (sum of squared deviations of the reference from its mean); pooled figures take all frames as one sample.";
+}
+
 }  // namespace
 
 void add_compare_stages(Catalogue& catalogue) {
@@ -128,6 +138,7 @@ void add_compare_stages(Catalogue& catalogue) {
                   number_option("edge_s", "s", 0.0, at_least(0), "left out at both ends of the common span")};
   spec.run = run;
   spec.report = fill;
+  spec.methods = methods;
   catalogue.add(std::move(spec));
 }
 

@@ -67,7 +67,12 @@ void run(const StageContext& context, StageOutput& out) {
 
 void fill(const ReportContext& context, report::Section& section) {
   section.blocks.push_back(report::Paragraph{"Synthetic recordings: every parameter behind them is known."});
-  section.blocks.push_back(report::make_grid(context.output->tables.at("truth")));
+  section.title += ": synthetic recordings";
+  report::GridOptions grid;
+  grid.names = {{"max_isometric_force_N", "max. force"}, {"optimal_fibre_length_m", "optimal fibre length"}, {"tendon_slack_length_m", "slack length"}, {"delay_s", "delay"},
+                {"time_constant_1_s", "τ1"}, {"time_constant_2_s", "τ2"}};
+  grid.decimals = {{"max_isometric_force_N", 1}, {"optimal_fibre_length_m", 4}, {"tendon_slack_length_m", 4}, {"delay_s", 3}, {"time_constant_1_s", 3}, {"time_constant_2_s", 3}};
+  section.blocks.push_back(report::make_grid(context.output->tables.at("truth"), grid));
   std::vector<std::string> trials;
   for (const data::TrialInfo& trial : context.output->signals->info().trials) trials.push_back(trial.name);
   section.blocks.push_back(trial_plots(*context.output->signals, trials, data::Quantity::joint_angle, "joint angle", "deg"));
