@@ -15,6 +15,10 @@ std::vector<std::string> select_trials(const StageSpec& spec,
     std::vector<std::string> names;
     for (const data::TrialInfo& trial : wired->second.front()->signals->info().trials)
       names.push_back(trial.name);
+    if (names.empty() && patterns.empty()) {
+      throw data::InputError("no-trials", fmt::format("`{}` has no trials", wired->second.front()->stage),
+                             "check what it was made from");
+    }
     if (patterns.empty()) return names;
     return data::match_names(patterns, names, fmt::format("trial of `{}`", wired->second.front()->stage));
   }

@@ -25,7 +25,7 @@ StageData session_data(data::Session session);
 
 /// Names of the trials to work on: those of the first wired signals input that match the patterns (all if
 /// there are none), in that input's order. Empty where no signals input is wired. Throws
-/// InputError("no-match").
+/// InputError("no-match"), or ("no-trials") where that input has none.
 std::vector<std::string> select_trials(const StageSpec& spec,
                                        const std::map<std::string, std::vector<const StageData*>>& inputs,
                                        const std::vector<std::string>& patterns);
