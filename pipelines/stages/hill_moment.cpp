@@ -229,7 +229,7 @@ void add_hill_stages(Catalogue& catalogue) {
                  {"kinematics", PortType::signals, "joint angle, and velocity if known (limb.kinematics)", false, false, true},
                  {"subject", PortType::subject, "calibrated subject", true}};
   spec.options = {optional_text("coordinate", "joint coordinate; may be left out where the scene has one"),
-                  choice_option("outside_activation", "clamp", {"clamp", "fail"}, "activations outside [0, 1]: bring them to the ends and count them, or fail"),
+                  choice_option("outside_activation", "clamp", {"clamp", "fail"}, "activations above 1: bring them to 1 and count them, or fail; those below 0 (ringing of a filter) are brought to 0 and counted"),
                   optional_text("override_fibre_velocity", "`none`, `zero_lag` or `causal` instead of the subject's choice, e.g. to compare with f_v = 1")};
   for (OptionSpec& o : muscle_option_specs()) spec.options.push_back(std::move(o));
   for (OptionSpec& o : activation_option_specs()) spec.options.push_back(std::move(o));

@@ -131,7 +131,7 @@ void add_session_stages(Catalogue& catalogue) {
                   number_option("clip_V", "V", d.emg.clip_V, at_least(0), "amplifier's range; 0: no clipping"),
                   number_option("dropouts_per_minute", "", d.emg.dropouts_per_minute, at_least(0), "expected number of dropouts"),
                   number_option("moment_noise_sd_N_m", "N m", d.moment_noise_sd_N_m, at_least(0), "noise of the reference moment"),
-                  flag_option("raw_emg", d.raw_emg, "false: excitations instead of raw EMG"),
+                  flag_option("raw_emg", d.raw_emg, "false: motion and moment only, without raw EMG; true excitations are part of `content = \"truth\"`"),
                   flag_option("dynamometer", d.dynamometer, "also the machine's torque, angle and velocity, gravity included")};
   for (OptionSpec& o : muscle_option_specs()) spec.options.push_back(std::move(o));
   for (OptionSpec& o : activation_option_specs()) spec.options.push_back(std::move(o));
