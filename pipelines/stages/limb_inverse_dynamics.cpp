@@ -206,8 +206,8 @@ void fill(const ReportContext& context, report::Section& section) {
   section.blocks.push_back(report::Paragraph{text, report::Tone::warning});
   report::GridOptions grid;
   grid.digits = 3;
-  grid.names = {{"first_moment_kg_m", "mass × distance"}, {"inertia_kg_m2", "inertia"}, {"mean_N_m", "mean"}, {"largest_N_m", "largest"}, {"rms_inertial_N_m", "RMS of inertia"},
-                {"rms_sd_N_m", "standard uncertainty"}, {"share_used", "share used"}, {"orientation_against_points", "orientation against points"}};
+  grid.names = {{"first_moment_kg_m", "mass × distance"}, {"inertia_kg_m2", "inertia"}, {"mean_N_m", "mean"}, {"largest_N_m", "largest"}, {"rms_inertial_N_m", "RMS inertial"},
+                {"rms_sd_N_m", "RMS sd"}, {"share_used", "share used"}, {"orientation_against_points", "orientation − points"}};
   section.blocks.push_back(report::make_grid(output.tables.at("moment"), grid));
   report::PlotRow plots;
   plots.min_width_px = 320.0;
