@@ -131,6 +131,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"mixed-tendons", "Muscles of one model must all have rigid or all have elastic tendons."},
       {"mvc-absent",
        "There is no trial to normalise by. Name trials of kind mvc, or choose another normalisation."},
+      {"rest-absent", "There is no trial at rest whose envelope could be taken off. Name one of kind rest or passive, or leave that step out."},
       {"no-common-frames", "Two series share no frame at which both have a value."},
       {"no-common-window", "Signals that are to be used together do not overlap in time."},
       {"no-convergence",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -79,7 +80,7 @@ std::vector<OptionSpec> calibration_option_specs() {
       integer_option("decimate", 1, between(1, 1000), "use every n-th sample of the reference moment"),
       optional_number("excitation_cv", "", at_least(0), "coefficient of variation of the envelopes' noise; default: from the EMG's band and the envelope's cut-off; 0: none"),
       number_option("emg_band_low_hz", "Hz", 30.0, above(0), "lower edge of the conditioned EMG's band, for that noise"),
-      number_option("emg_band_high_hz", "Hz", 450.0, above(0), "upper edge"),
+      number_option("emg_band_high_hz", "Hz", 220.0, above(0), "upper edge of the flat band that varies as much as EMG does: its statistical bandwidth is about 190 Hz"),
       number_option("envelope_lowpass_hz", "Hz", 6.0, above(0), "cut-off of the envelope, for that noise"),
       integer_option("noise_replicates", 40, between(2, 10000), "simulated data sets behind the bias and the intervals"),
       flag_option("correct_bias", true, "take the bias from errors in the excitation off the fitted values"),
@@ -139,9 +140,23 @@ data::Signal moment_signal(const std::string& name, const std::string& coordinat
   signal.info.unit = "N m";
   signal.info.coordinate = coordinate;
   signal.info.start_time_s = time_s.front();
-  signal.info.count = values.size();
-  signal.info.rate_hz = time_s.size() > 1 ? static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front()) : 1.0;
-  signal.samples = values;
+  double step = 1.0;
+  for (std::size_t i = 1; i < time_s.size(); ++i) step = i == 1 ? time_s[1] - time_s[0] : std::min(step, time_s[i] - time_s[i - 1]);
+  signal.info.rate_hz = 1.0 / step;
+  std::vector<std::string> gaps;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) {
+      // Frames that are not compared lie on the straight line between their neighbours, and the attribute says where.
+      const auto missing = std::lround((time_s[i] - time_s[i - 1]) / step) - 1;
+      for (long k = 1; k <= missing; ++k) {
+        signal.samples.push_back(values[i - 1] + (values[i] - values[i - 1]) * static_cast<double>(k) / static_cast<double>(missing + 1));
+      }
+      if (missing > 0) gaps.push_back(fmt::format("{:.3f} to {:.3f}", time_s[i - 1], time_s[i]));
+    }
+    signal.samples.push_back(values[i]);
+  }
+  signal.info.count = signal.samples.size();
+  if (!gaps.empty()) signal.info.attributes["not_compared_s"] = fmt::format("{}", fmt::join(gaps, "; "));
   return signal;
 }
 
@@ -155,7 +170,7 @@ void add_calibration_tables(const optimise::CalibrationResult& result, StageOutp
     const optimise::TrialWindow& w = result.windows[i];
     const optimise::Metrics& m = result.trial_metrics[i];
     fit.row({w.name, static_cast<double>(m.count), m.rmse, m.nrmse_range.value_or(none), m.r2.value_or(none), m.bias, w.first_time_s, w.last_time_s,
-             static_cast<double>(w.before + w.after)});
+             static_cast<double>(w.before + w.after + w.masked)});
   }
   out.tables["training"] = fit.take();
   TableBuilder iterations("iterations of the best start");

@@ -11,6 +11,7 @@
 #include "data/model/parallel.hpp"
 #include "emg/conditioning.hpp"
 #include "emg/normalisation.hpp"
+#include "emg/rest_level.hpp"
 #include "pipelines/stages/common.hpp"
 #include "pipelines/stages/emg_common.hpp"
 
@@ -74,9 +75,15 @@ struct Plan {
   }
 };
 
+double rest_of(const std::map<std::string, double>& rest, const std::string& channel) {
+  const auto found = rest.find(channel);
+  return found == rest.end() ? 0.0 : found->second;
+}
+
 /// The references of all channels, found over the trials one after the other.
 std::map<std::string, emg::NormalisationReference> find_references(const StageContext& context, const StageData& input, const Plan& plan,
-                                                                   const std::vector<std::string>& trials, const emg::NormalisationOptions& options) {
+                                                                   const std::vector<std::string>& trials, const emg::NormalisationOptions& options,
+                                                                   const std::map<std::string, double>& rest) {
   std::map<std::string, emg::ReferenceSearch> searches;
   for (const std::string& name : trials) {
     const std::size_t t = trial_index(input, name);
@@ -85,6 +92,7 @@ std::map<std::string, emg::NormalisationReference> find_references(const StageCo
     const emg::ConditioningChain chain = plan.chain(trial, channels);
     condition_by_groups(chain, *input.signals, t, channels, memory_budget_bytes,
                         [&](const data::SignalInfo& raw, std::span<double> envelope, const emg::OutputLayout& layout) {
+                          if (!rest.empty()) emg::remove_rest(envelope, rest_of(rest, raw.name));
                           const auto [search, added] = searches.try_emplace(raw.name, raw.name, options);
                           search->second.take({name, envelope, chain.output_rate_hz, raw.start_time_s + layout.start_shift_s});
                         });
@@ -93,6 +101,36 @@ std::map<std::string, emg::NormalisationReference> find_references(const StageCo
   std::map<std::string, emg::NormalisationReference> references;
   for (const auto& [channel, search] : searches) references.emplace(channel, search.finish());
   return references;
+}
+
+/// Each channel's mean envelope over the trials at rest.
+std::map<std::string, double> find_rest(const StageContext& context, const StageData& input, const Plan& plan) {
+  std::vector<std::string> all, quiet;
+  for (const data::TrialInfo& trial : input.signals->info().trials) {
+    all.push_back(trial.name);
+    if (trial.kind == data::TrialKind::rest || trial.kind == data::TrialKind::passive) quiet.push_back(trial.name);
+  }
+  const std::vector<std::string>& patterns = context.options->texts("rest_trials");
+  if (!patterns.empty()) quiet = data::match_names(patterns, all, "trial");
+  if (quiet.empty()) {
+    throw data::InputError("rest-absent", fmt::format("stage `{}` takes off the envelope at rest, and no trial is of kind `rest` or `passive`", context.name),
+                           "record one, name trials in `rest_trials`, or set `subtract_rest = false`");
+  }
+  std::map<std::string, std::pair<double, std::size_t>> sums;
+  for (const std::string& name : quiet) {
+    const std::size_t t = trial_index(input, name);
+    const data::TrialInfo& trial = input.signals->info().trials[t];
+    const std::vector<std::size_t> channels = plan.channels(trial);
+    condition_by_groups(plan.chain(trial, channels), *input.signals, t, channels, memory_budget_bytes,
+                        [&](const data::SignalInfo& raw, std::span<double> envelope, const emg::OutputLayout&) {
+                          auto& [sum, count] = sums[raw.name];
+                          for (const double e : envelope) sum += e;
+                          count += envelope.size();
+                        });
+  }
+  std::map<std::string, double> rest;
+  for (const auto& [channel, sum] : sums) rest[channel] = std::max(0.0, sum.first / static_cast<double>(sum.second));
+  return rest;
 }
 
 std::vector<std::string> reference_trials(const StageContext& context, const StageData& input, emg::Normalisation method) {
@@ -154,19 +192,31 @@ void run(const StageContext& context, StageOutput& out) {
   const Options& options = *context.options;
   const StageData& input = context.input("signals");
   Plan plan{envelope_options(options), options.texts("channels"), options.texts("exclude")};
+  std::vector<std::string> recorded;
+  for (const std::string& name : context.trials) {
+    const data::TrialInfo& trial = trial_info(input, name);
+    for (const std::string& channel : names_of(trial, signals_of(trial, data::Quantity::emg))) recorded.push_back(channel);
+  }
+  select(plan.excluded, recorded, "EMG channel");  // a name that is not there is a mistake
   for (const std::string& name : excluded_channels(context.maybe_input("quality"))) plan.excluded.push_back(name);
 
   emg::NormalisationOptions normalisation;
   normalisation.method = emg::parse_normalisation(options.text("normalise"));
   normalisation.window_s = options.number("reference_window_s");
   normalisation.lowpass_hz = options.number("lowpass_hz");
+  std::map<std::string, double> rest;
+  if (options.boolean("subtract_rest")) rest = find_rest(context, input, plan);
   std::map<std::string, emg::NormalisationReference> references;
   if (normalisation.method != emg::Normalisation::none) {
-    references = find_references(context, input, plan, reference_trials(context, input, normalisation.method), normalisation);
+    references = find_references(context, input, plan, reference_trials(context, input, normalisation.method), normalisation, rest);
+    if (options.boolean("correct_reference_bias")) {
+      for (auto& [channel, r] : references) r.value /= 1.0 + r.expected_bias;
+    }
     TableBuilder table("normalisation");
-    table.text("channel").text("method").number("reference_V", "V").text("trial").number("time_s", "s").number("window_s", "s").number("expected_bias", "1");
+    table.text("channel").text("method").number("reference_V", "V").text("trial").number("time_s", "s").number("window_s", "s").number("expected_bias", "1").text("bias_taken_off").number("rest_V", "V");
     for (const auto& [channel, r] : references) {
-      table.row({channel, emg::to_string(r.method), r.value, r.trial, r.time_s, r.window_s, r.expected_bias});
+      table.row({channel, emg::to_string(r.method), r.value, r.trial, r.time_s, r.window_s, r.expected_bias,
+                 std::string(options.boolean("correct_reference_bias") ? "yes" : "no"), rest_of(rest, channel)});
       out.diagnostics.insert(out.diagnostics.end(), r.diagnostics.begin(), r.diagnostics.end());
     }
     out.tables["normalisation"] = table.take();
@@ -194,6 +244,10 @@ void run(const StageContext& context, StageOutput& out) {
                           info.start_time_s = raw.start_time_s + layout.start_shift_s;
                           info.count = layout.count;
                           for (const auto& [key, value] : emg::attributes(chain)) info.attributes[key] = value;
+                          if (!rest.empty()) {
+                            const std::size_t floored = emg::remove_rest(envelope, rest_of(rest, raw.name));
+                            info.attributes["rest_taken_off"] = fmt::format("{:.6g} V in the mean square; {} of {} samples at or below it are 0", rest_of(rest, raw.name), floored, envelope.size());
+                          }
                           if (normalisation.method != emg::Normalisation::none) {
                             const auto reference = references.find(raw.name);
                             if (reference == references.end()) {
@@ -326,6 +380,8 @@ std::string methods(const ReportContext& context) {
   std::string norm = "not normalised (a gain per channel is part of the calibration)";
   if (o.text("normalise") == "mvc") norm = fmt::format("normalised by the largest {:g} s mean of the maximum voluntary contractions", o.number("reference_window_s"));
   if (o.text("normalise") == "trials_maximum") norm = fmt::format("normalised by the largest {:g} s mean of the trials themselves, for want of a maximum voluntary contraction", o.number("reference_window_s"));
+  if (o.boolean("correct_reference_bias")) norm += ", less the expected excess of a maximum over the mean";
+  if (o.boolean("subtract_rest")) norm += ", after the envelope at rest had been taken off in the mean square";
   return fmt::format("EMG was {}{}, full-wave rectified, low-pass filtered at {:g} Hz (Butterworth, effective order {}), {}; {} The linear envelope was {}.", band, notch,
                      o.number("lowpass_hz"), order("lowpass_order"), zero_lag ? "forward and backward without lag" : "causally", edges + ".", norm);
 }
@@ -356,6 +412,9 @@ void add_emg_envelope(Catalogue& catalogue) {
       choice_option("normalise", "mvc", {"mvc", "trials_maximum", "none"}, "what an excitation of 1 means"),
       texts_option("reference_trials", {}, "patterns of the trials whose maximum counts; empty: kind `mvc`, or the stage's trials for trials_maximum"),
       number_option("reference_window_s", "s", 0.5, at_least(0), "length of the mean whose maximum counts; 0: the largest single sample (biased by about +25 %)"),
+      flag_option("correct_reference_bias", false, "divide the reference by what a maximum is expected to exceed the plateau's mean by (reported either way)"),
+      flag_option("subtract_rest", false, "take the envelope at rest off in the mean square: at 20 dB an excitation of 0 otherwise reads as 0.1"),
+      texts_option("rest_trials", {}, "patterns of the trials at rest; empty: kinds `rest` and `passive`"),
       number_option("steps_window_s", "s", 1.0, above(0), "length of the piece of each channel that the report shows step by step"),
   };
   for (const OptionSpec& o : more) spec.options.push_back(o);

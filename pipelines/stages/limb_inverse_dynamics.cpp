@@ -159,6 +159,9 @@ void run(const StageContext& context, StageOutput& out) {
     moment.info.attributes["source"] = "inverse dynamics, " + r.origin;
     out.signals->write(context.trials[i], moment);
     out.signals->write(context.trials[i], series(r, "moment_sd", data::Quantity::other, coordinate.name, r.moment.sd_N_m));
+    data::Signal use = series(r, "use", data::Quantity::other, coordinate.name, r.moment.usable);
+    use.info.unit = "1";
+    out.signals->write(context.trials[i], use);
     out.signals->write(context.trials[i], series(r, "gravity_part", data::Quantity::other, coordinate.name, r.moment.gravity_part_N_m));
     out.signals->write(context.trials[i], series(r, "inertial_part", data::Quantity::other, coordinate.name, r.moment.inertial_part_N_m));
     if (context.progress) context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()), context.trials[i]);
@@ -166,14 +169,14 @@ void run(const StageContext& context, StageOutput& out) {
 
   TableBuilder table("inverse dynamics by trial");
   table.text("trial").number("first_moment_kg_m", "kg m").number("inertia_kg_m2", "kg m^2").number("mean_N_m", "N m").number("largest_N_m", "N m").number("rms_inertial_N_m", "N m")
-      .number("rms_sd_N_m", "N m").text("orientation_against_points");
+      .number("rms_sd_N_m", "N m").number("share_used", "1").text("orientation_against_points");
   TableBuilder contributors("what the uncertainty comes from");
   contributors.text("trial").text("contributor").number("rms_sd_N_m", "N m");
   for (std::size_t i = 0; i < results.size(); ++i) {
     const limb::JointMoment& m = results[i].moment;
     const double n = static_cast<double>(m.moment_N_m.size());
     table.row({context.trials[i], m.first_moment_kg_m, m.inertia_kg_m2, m.moment_N_m.mean(), m.moment_N_m.maxCoeff(), std::sqrt(m.inertial_part_N_m.squaredNorm() / n),
-               std::sqrt(m.sd_N_m.squaredNorm() / n), results[i].agreement ? fmt::format("{:.1f} deg rms", results[i].agreement->rms_deg) : std::string("not compared")});
+               std::sqrt(m.sd_N_m.squaredNorm() / n), m.usable.mean(), results[i].agreement ? fmt::format("{:.1f} deg rms", results[i].agreement->rms_deg) : std::string("not compared")});
     for (const limb::MomentContributor& c : m.contributors) contributors.row({context.trials[i], c.name, c.rms_sd_N_m});
   }
   out.tables["moment"] = table.take();
@@ -258,7 +261,8 @@ void add_limb_inverse_dynamics(Catalogue& catalogue) {
   spec.doc =
       "Computes the moment that muscles must have exerted for the recorded motion of forearm, hand and held load: gravity from the forearm's own orientation (not from the joint angle: the upper "
       "arm moves too), rotational inertia, and the acceleration of the elbow where its trajectory is known. The uncertainty of masses, distances and inertias that the scene states is propagated "
-      "to first order and given at each instant. Sources: Winter 2009, ch. 5; de Leva 1996, doi:10.1016/0021-9290(95)00178-6.";
+      "to first order and given at each instant. Samples near the ends, and those in which the forearm leaves its plane so that the hinge's axis is not known, are marked (signal `use`) and left out by "
+      "calibration and verdict. Sources: Winter 2009, ch. 5; de Leva 1996, doi:10.1016/0021-9290(95)00178-6.";
   spec.needs_scene = true;
   spec.inputs = {{"signals", PortType::signals, "recordings: orientation, points, or a joint angle", false, false, true}};
   OptionSpec long_axis;

@@ -82,6 +82,15 @@ std::vector<data::Signal> excitation_channels(const StageData& excitation, const
   return channels;
 }
 
+std::vector<bool> use_of(const StageData& moment, const std::string& trial) {
+  const std::size_t t = trial_index(moment, trial);
+  const data::TrialInfo& info = moment.signals->info().trials[t];
+  std::vector<bool> use;
+  if (!info.has_signal("use")) return use;
+  for (const double mark : moment.signals->read(t, info.signal_index("use"))) use.push_back(mark > 0.5);
+  return use;
+}
+
 std::vector<optimise::CalibrationTrial> calibration_trials(const StageContext& context, const data::Coordinate& coordinate,
                                                            const std::vector<std::string>& trials) {
   const StageData& excitation = context.input("excitation");
@@ -104,6 +113,7 @@ std::vector<optimise::CalibrationTrial> calibration_trials(const StageContext& c
                              "add a stage limb.dynamometer or limb.inverse_dynamics, and wire `moment` to it");
     }
     trial.moment = signal_of(moment, name, data::Quantity::joint_moment, coordinate.name);
+    trial.use = use_of(moment, name);
     out.push_back(std::move(trial));
   }
   return out;

@@ -23,6 +23,9 @@ const data::Subject& subject_of(const StageData& data);
 /// "rate-mismatch" (channels on different grids), "not-normalised" (an envelope in V without a subject's gain).
 std::vector<data::Signal> excitation_channels(const StageData& excitation, const std::string& trial, const data::Subject* subject);
 
+/// Which samples of a reference moment are to be compared: its stage's signal `use`; empty where there is none.
+std::vector<bool> use_of(const StageData& moment, const std::string& trial);
+
 /// What a calibration is given of each trial: excitations, kinematics and reference moment of three inputs.
 std::vector<optimise::CalibrationTrial> calibration_trials(const StageContext& context, const data::Coordinate& coordinate,
                                                            const std::vector<std::string>& trials);

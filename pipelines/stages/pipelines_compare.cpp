@@ -12,6 +12,7 @@
 #include "optimise/metrics.hpp"
 #include "pipelines/stages/calibration_options.hpp"
 #include "pipelines/stages/common.hpp"
+#include "pipelines/stages/model_options.hpp"
 
 namespace brachium::pipelines {
 namespace {
@@ -21,13 +22,13 @@ struct Pair {
 };
 
 /// The reference's samples inside the span of both, and the model interpolated there.
-Pair align(const data::Signal& reference, const data::Signal& model, double edge_s) {
+Pair align(const data::Signal& reference, const std::vector<bool>& use, const data::Signal& model, double edge_s) {
   Pair pair;
   const double from = std::max(reference.info.start_time_s, model.info.start_time_s) + edge_s;
   const double to = std::min(reference.info.end_time_s(), model.info.end_time_s()) - edge_s;
   for (std::size_t i = 0; i < reference.samples.size(); ++i) {
     const double t = reference.info.time_s(i);
-    if (t < from || t > to) continue;
+    if (t < from || t > to || (!use.empty() && !use[i])) continue;
     pair.time.push_back(t);
     pair.reference.push_back(reference.samples[i]);
   }
@@ -62,7 +63,7 @@ void run(const StageContext& context, StageOutput& out) {
     std::vector<std::vector<double>> unseen_reference, unseen_model, all_reference, all_model;
     for (const std::string& name : context.trials) {
       const data::Signal measured = signal_of(reference, name, data::Quantity::joint_moment, coordinate);
-      const Pair pair = align(measured, signal_of(*model, name, data::Quantity::joint_moment, coordinate), context.options->number("edge_s"));
+      const Pair pair = align(measured, use_of(reference, name), signal_of(*model, name, data::Quantity::joint_moment, coordinate), context.options->number("edge_s"));
       if (pair.time.size() < 2) {
         throw data::InputError("no-common-window", fmt::format("reference and `{}` have no common frames in trial `{}`", model->stage, name), "check start times and `edge_s`");
       }
