@@ -93,6 +93,27 @@ double envelope_variance(const std::vector<double>& frequency_hz, const std::vec
 
 constexpr double kLeastReliability = 0.15;
 
+/// White noise of a given standard deviation, sample by sample, through the low-pass, forward and backward: how an envelope's
+/// noise comes about. Ends are continued far enough for the filter's transients; unit deviation gives unit variance.
+std::vector<double> filtered_noise(const std::vector<double>& deviation, double rate_hz, double cutoff_hz, std::uint64_t seed,
+                                   std::uint64_t stream) {
+  const LowPass pass(cutoff_hz / std::pow(std::sqrt(2.0) - 1.0, 0.25), rate_hz);
+  const auto margin = static_cast<std::size_t>(std::ceil(4.0 * rate_hz / cutoff_hz));
+  const std::size_t count = deviation.size();
+  emg::Random random(seed, stream);
+  std::vector<double> x(count + 2 * margin), impulse(2 * margin + 1, 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = random.normal() * deviation[i < margin ? 0 : std::min(i - margin, count - 1)];
+  impulse[margin] = 1.0;
+  double energy = 0.0;
+  pass.both_ways(x);
+  pass.both_ways(impulse);
+  for (double value : impulse) energy += value * value;
+  std::vector<double> out(x.begin() + static_cast<std::ptrdiff_t>(margin), x.begin() + static_cast<std::ptrdiff_t>(margin + count));
+  for (double& value : out) value /= std::sqrt(energy);
+  return out;
+}
+
 /// Excitations with one more dose of noise. Replicates 2i and 2i + 1 have opposite noise, so that what is odd in it cancels.
 CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, const ExcitationNoise& noise, std::size_t replicate) {
   CalibrationProblem::Samples out = problem.excitations();
@@ -101,12 +122,13 @@ CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, con
   const double c = noise.coefficient_of_variation / std::sqrt(1.0 + std::pow(noise.coefficient_of_variation, 2));
   for (std::size_t t = 0; t < out.size(); ++t) {
     for (auto& channel : out[t]) {
-      const auto eta = envelope_noise(channel.size(), problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
+      std::vector<double> deviation(channel.size());
       for (std::size_t i = 0; i < channel.size(); ++i) {
         const double e = std::abs(channel[i]), f = noise.floor;
-        const double deviation = f > 0.0 ? (e * e + f * f) / std::max(e, f) : e;
-        channel[i] += (replicate % 2 == 0 ? c : -c) * deviation * eta[i];
+        deviation[i] = c * (f > 0.0 ? (e * e + f * f) / std::max(e, f) : e);
       }
+      const auto eta = filtered_noise(deviation, problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
+      for (std::size_t i = 0; i < channel.size(); ++i) channel[i] += (replicate % 2 == 0 ? 1.0 : -1.0) * eta[i];
     }
   }
   return out;
@@ -142,6 +164,7 @@ ScoreData score_of(const CalibrationProblem& problem, const VectorXd& u, bool ro
 struct Corrected {
   VectorXd score;             ///< priors included
   MatrixXd H;                 ///< priors included, reliabilities limited from below
+  VectorXd noise_score;       ///< what one dose of noise adds to J'r
   MatrixXd rows;              ///< corrected score by row
   MatrixXd monte_carlo;       ///< covariance of the simulated part of the score
   double reliability = 1.0, explained = 0.0;
@@ -190,6 +213,7 @@ Corrected corrected_score(const CalibrationProblem& problem, const VectorXd& u, 
   const double count = static_cast<double>(out.used), pairs = 0.5 * count;
   mean_score /= count;
   mean_information /= count;
+  out.noise_score = mean_score - base.score;
   out.score = 2.0 * base.score - mean_score + prior_weight.cwiseProduct(u - prior_mean);
   out.explained = (mean_square / count - base.square) / static_cast<double>(problem.residual_count());
   if (rows) out.rows = 2.0 * base.rows - mean_rows / count;
@@ -292,20 +316,7 @@ std::vector<double> envelope_noise(std::size_t count, double rate_hz, double cut
   if (!(rate_hz > 0.0) || !(cutoff_hz > 0.0) || !(cutoff_hz < 0.4 * rate_hz))
     throw data::InputError("cutoff-above-nyquist",
                            fmt::format("noise with cut-off {} Hz cannot be simulated on excitations at {} Hz", cutoff_hz, rate_hz));
-  // White noise through the low-pass itself, forward and backward, with room at both ends for its transients.
-  const LowPass pass(cutoff_hz / std::pow(std::sqrt(2.0) - 1.0, 0.25), rate_hz);
-  const auto margin = static_cast<std::size_t>(std::ceil(4.0 * rate_hz / cutoff_hz));
-  emg::Random random(seed, stream);
-  std::vector<double> x(count + 2 * margin), impulse(2 * margin + 1, 0.0);
-  for (double& value : x) value = random.normal();
-  impulse[margin] = 1.0;
-  double energy = 0.0;
-  pass.both_ways(x);
-  pass.both_ways(impulse);
-  for (double value : impulse) energy += value * value;
-  std::vector<double> out(x.begin() + static_cast<std::ptrdiff_t>(margin), x.begin() + static_cast<std::ptrdiff_t>(margin + count));
-  for (double& value : out) value /= std::sqrt(energy);
-  return out;
+  return filtered_noise(std::vector<double>(count, 1.0), rate_hz, cutoff_hz, seed, stream);
 }
 
 ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& problem, const VectorXd& x,
@@ -358,7 +369,9 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
   out.x = solution;
   out.bias = x - solution;
   out.covariance = scale.asDiagonal() * C * scale.asDiagonal();
-  out.covariance += std::pow(2.0 * noise.coefficient_uncertainty, 2) * out.bias * out.bias.transpose();
+  // dx / d ln c^2 = H^-1 (one dose's share of the score): what a wrong law of the noise does to x.
+  const VectorXd by_law = 2.0 * noise.coefficient_uncertainty * (inverse * at.noise_score).cwiseProduct(scale);
+  out.covariance += by_law * by_law.transpose();
   out.bias_standard_error = monte_carlo.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseProduct(scale);
   out.explained_variance = at.explained;
   out.least_reliability = at.reliability;

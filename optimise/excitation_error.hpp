@@ -30,8 +30,8 @@ namespace brachium::optimise {
 /// The law of the noise in an envelope.
 struct ExcitationNoise {
   double coefficient_of_variation = 0.0;  ///< c; 0: no noise
-  /// How well c is known, relative: real EMG is not the Gaussian noise c is computed from. The bias goes with c^2, so twice
-  /// this share of it counts as an error.
+  /// How well c is known, relative: real EMG is not the Gaussian noise c is computed from. What a
+  /// wrong c does to x, 2 (dx / d ln c^2) times this, is part of the covariance.
   double coefficient_uncertainty = 0.15;
   /// Where sensor noise has been taken off in the mean square (without_noise_floor), what is left varies more at low effort:
   /// sd(e) = c (e^2 + floor^2) / max(e, floor), with the effective floor in units of excitation. 0: sd(e) = c e.
