@@ -29,7 +29,8 @@ VectorXd delayed(const data::Signal& channel, const std::vector<double>& time_s,
   std::vector<double> earlier(time_s);
   for (double& t : earlier) t = std::max(t - delay, channel.info.start_time_s);
   VectorXd out(static_cast<Index>(time_s.size()));
-  Resampling(channel.info, earlier).apply(channel.samples, {out.data(), static_cast<std::size_t>(out.size())});
+  Resampling(channel.info, earlier)
+      .apply(channel.samples, {out.data(), static_cast<std::size_t>(out.size())});
   return out;
 }
 
@@ -58,7 +59,8 @@ Frames frames_of(const BaselineSpec& spec, const CalibrationTrial& trial, double
   };
   switch (spec.kind) {
     case BaselineSpec::Kind::linear_envelope:
-      for (const data::Signal& channel : trial.excitations) add(channel.info.name, delayed(channel, out.time_s, 0.0));
+      for (const data::Signal& channel : trial.excitations)
+        add(channel.info.name, delayed(channel, out.time_s, 0.0));
       add("sin q", q.sin().matrix());
       break;
     case BaselineSpec::Kind::angle_polynomial:
@@ -108,37 +110,48 @@ Frames frames_of(const BaselineSpec& spec, const CalibrationTrial& trial, double
 
 std::string title_of(const BaselineSpec& spec, std::size_t columns) {
   switch (spec.kind) {
-    case BaselineSpec::Kind::linear_envelope: return "linear in the envelopes and sin(angle)";
-    case BaselineSpec::Kind::angle_polynomial: return fmt::format("polynomial of degree {} in the angle alone, no EMG", spec.degree);
-    case BaselineSpec::Kind::flexible: break;
+    case BaselineSpec::Kind::linear_envelope:
+      return "linear in the envelopes and sin(angle)";
+    case BaselineSpec::Kind::angle_polynomial:
+      return fmt::format("polynomial of degree {} in the angle alone, no EMG", spec.degree);
+    case BaselineSpec::Kind::flexible:
+      break;
   }
-  return fmt::format("flexible regression, {} columns of delayed envelopes times angle and velocity", columns);
+  return fmt::format("flexible regression, {} columns of delayed envelopes times angle and velocity",
+                     columns);
 }
 
 }  // namespace
 
 std::string BaselineSpec::name() const {
   switch (kind) {
-    case Kind::linear_envelope: return "linear_envelope";
-    case Kind::angle_polynomial: return fmt::format("angle_polynomial_{}", degree);
-    case Kind::flexible: break;
+    case Kind::linear_envelope:
+      return "linear_envelope";
+    case Kind::angle_polynomial:
+      return fmt::format("angle_polynomial_{}", degree);
+    case Kind::flexible:
+      break;
   }
   return "flexible";
 }
 
-Baseline fit_baseline(const BaselineSpec& spec, const std::vector<CalibrationTrial>& training, double edge_s) {
+Baseline fit_baseline(const BaselineSpec& spec, const std::vector<CalibrationTrial>& training,
+                      double edge_s) {
   if (training.empty()) throw data::InputError("no-trials", "a regression needs at least one trial");
   if (!(spec.ridge >= 0.0) || spec.degree < 1)
-    throw data::InputError("out-of-range", fmt::format("baseline `{}`: ridge {} must not be negative, degree {} at least 1",
-                                                       spec.name(), spec.ridge, spec.degree));
+    throw data::InputError("out-of-range",
+                           fmt::format("baseline `{}`: ridge {} must not be negative, degree {} at least 1",
+                                       spec.name(), spec.ridge, spec.degree));
   std::vector<Frames> parts;
   Index rows = 0;
   for (const CalibrationTrial& trial : training) {
     parts.push_back(frames_of(spec, trial, edge_s));
     rows += parts.back().features.rows();
     if (parts.back().names != parts.front().names)
-      throw data::InputError("unmapped-channel", fmt::format("trials `{}` and `{}` do not have the same channels in the same order",
-                                                             training.front().name, trial.name));
+      throw data::InputError(
+          "unmapped-channel",
+          fmt::format("trials `{}` and `{}` do not have the same channels in the same order",
+                      training.front().name, trial.name));
   }
   Baseline out;
   out.spec = spec;
@@ -150,14 +163,16 @@ Baseline fit_baseline(const BaselineSpec& spec, const std::vector<CalibrationTri
   Index row = 0;
   for (const Frames& part : parts) {
     A.middleRows(row, part.features.rows()) = part.features;
-    y.segment(row, part.features.rows()) = Eigen::Map<const VectorXd>(part.reference.data(), part.features.rows());
+    y.segment(row, part.features.rows()) =
+        Eigen::Map<const VectorXd>(part.reference.data(), part.features.rows());
     row += part.features.rows();
   }
   out.mean = A.colwise().mean();
   A.rowwise() -= out.mean.transpose();
   out.deviation = (A.colwise().squaredNorm() / static_cast<double>(rows)).cwiseSqrt();
   for (Index j = 0; j < k; ++j)
-    if (!(out.deviation[j] > 1e-12 * std::max(1.0, std::abs(out.mean[j])))) out.deviation[j] = 1.0;  // a constant column: weight 0
+    if (!(out.deviation[j] > 1e-12 * std::max(1.0, std::abs(out.mean[j]))))
+      out.deviation[j] = 1.0;  // a constant column: weight 0
   A = A * out.deviation.cwiseInverse().asDiagonal();
   out.intercept = y.mean();
   const VectorXd centred = y.array() - out.intercept;
@@ -177,9 +192,11 @@ Baseline fit_baseline(const BaselineSpec& spec, const std::vector<CalibrationTri
 BaselinePrediction predict(const Baseline& baseline, const CalibrationTrial& trial, double edge_s) {
   const Frames frames = frames_of(baseline.spec, trial, edge_s);
   if (frames.names != baseline.columns)
-    throw data::InputError("unmapped-channel", fmt::format("trial `{}` does not have the channels that `{}` was fitted with",
-                                                           trial.name, baseline.spec.name()));
-  const MatrixXd standard = (frames.features.rowwise() - baseline.mean.transpose()) * baseline.deviation.cwiseInverse().asDiagonal();
+    throw data::InputError("unmapped-channel",
+                           fmt::format("trial `{}` does not have the channels that `{}` was fitted with",
+                                       trial.name, baseline.spec.name()));
+  const MatrixXd standard = (frames.features.rowwise() - baseline.mean.transpose()) *
+                            baseline.deviation.cwiseInverse().asDiagonal();
   const VectorXd y = (standard * baseline.weights).array() + baseline.intercept;
   return {frames.time_s, frames.reference, std::vector<double>(y.data(), y.data() + y.size())};
 }

@@ -54,10 +54,10 @@ void order_pairs(const std::vector<Parameter>& parameters, VectorXd& x) {
   }
 }
 
-/// The covariance under noise in the excitation takes the sandwich's place; no standard error becomes smaller by it. Where
-/// the bias is not taken off, it counts as an error.
-void widen(const CalibrationProblem& problem, const ExcitationErrorResult& error, bool corrected, const MatrixXd& jacobian,
-           const StatisticsOptions& options, FitStatistics& statistics) {
+/// The covariance under noise in the excitation takes the sandwich's place; no standard error becomes smaller
+/// by it. Where the bias is not taken off, it counts as an error.
+void widen(const CalibrationProblem& problem, const ExcitationErrorResult& error, bool corrected,
+           const MatrixXd& jacobian, const StatisticsOptions& options, FitStatistics& statistics) {
   const VectorXd before = statistics.covariance.diagonal();
   MatrixXd C = error.covariance;
   if (!corrected) C += error.bias * error.bias.transpose();
@@ -74,30 +74,38 @@ void add_warnings(const CalibrationProblem& problem, CalibrationResult& result) 
     result.diagnostics.push_back({severity, code, message, {}, help});
   };
   if (!result.summary.converged)
-    add(data::Severity::warning, "not-converged", "the calibration did not converge: " + result.summary.message(),
+    add(data::Severity::warning, "not-converged",
+        "the calibration did not converge: " + result.summary.message(),
         "allow more iterations, or set fewer parameters free");
   if (result.excitation_error.limited)
     add(data::Severity::warning, "unreliable-excitation",
-        fmt::format("noise in the excitations hides a combination of parameters (reliability {:.2f}): its bias is only partly "
-                    "removed", result.excitation_error.least_reliability),
+        fmt::format("noise in the excitations hides a combination of parameters (reliability {:.2f}): its "
+                    "bias is only partly "
+                    "removed",
+                    result.excitation_error.least_reliability),
         "let channels act one at a time, lower the envelope's cut-off, or set fewer parameters free");
   if (!result.excitation_error.converged)
-    add(data::Severity::warning, "not-converged", "the correction for noise in the excitations did not converge");
+    add(data::Severity::warning, "not-converged",
+        "the correction for noise in the excitations did not converge");
   for (const TrialWindow& w : result.windows) {
     if (w.above_one > 0)
       add(data::Severity::warning, "excitation-above-one",
-          fmt::format("trial `{}`: {} excitation samples exceed 1; activation is limited to 1 there", w.name, w.above_one),
+          fmt::format("trial `{}`: {} excitation samples exceed 1; activation is limited to 1 there", w.name,
+                      w.above_one),
           "a poor MVC, or normalisation by another trial");
     if (w.below_zero > 0)
       add(data::Severity::note, "excitation-below-zero",
-          fmt::format("trial `{}`: {} excitation samples are negative; activation is limited to 0 there", w.name, w.below_zero));
+          fmt::format("trial `{}`: {} excitation samples are negative; activation is limited to 0 there",
+                      w.name, w.below_zero));
   }
   for (const std::string& muscle : problem.undriven())
-    add(data::Severity::note, "undriven-muscle", fmt::format("muscle `{}` has no excitation: it is passive", muscle));
+    add(data::Severity::note, "undriven-muscle",
+        fmt::format("muscle `{}` has no excitation: it is passive", muscle));
   for (const auto& v : result.subject.verdicts) {
     if (v.verdict == "identified") continue;
     add(data::Severity::warning, v.verdict == "NOT IDENTIFIED" ? "not-identified" : "at-bound",
-        fmt::format("`{} {}` is {}{}", v.muscle, v.parameter, v.verdict, v.remark.empty() ? "" : ": " + v.remark));
+        fmt::format("`{} {}` is {}{}", v.muscle, v.parameter, v.verdict,
+                    v.remark.empty() ? "" : ": " + v.remark));
   }
   for (const WeakDirection& weak : result.statistics.weak)
     if (weak.parameters.size() > 1)
@@ -134,7 +142,8 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
                             const CalibrationOptions& options) {
   const CalibrationProblem problem(scene, trials, options.problem);
   if (problem.parameters().empty())
-    throw data::InputError("nothing-free", "the calibration has no free parameter", "name at least one under `free`");
+    throw data::InputError("nothing-free", "the calibration has no free parameter",
+                           "name at least one under `free`");
   CalibrationResult result;
   result.parameters = problem.parameters();
   result.windows = problem.windows();
@@ -148,22 +157,24 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
   VectorXd residuals;
   MatrixXd jacobian;
   problem.evaluator()->evaluate(result.x_uncorrected, residuals, &jacobian);
-  result.statistics = fit_statistics(result.parameters, result.x_uncorrected, residuals, jacobian, problem.blocks(),
-                                     options.statistics);
+  result.statistics = fit_statistics(result.parameters, result.x_uncorrected, residuals, jacobian,
+                                     problem.blocks(), options.statistics);
   const Index n = result.x.size();
   result.excitation_error.bias = VectorXd::Zero(n);
   if (options.excitation_noise.coefficient_of_variation != 0.0) {
-    result.excitation_error =
-        simulate_excitation_error(problem, result.x_uncorrected, std::vector<bool>(static_cast<std::size_t>(n), false),
-                                  options.excitation_noise, options.problem.threads);
-    widen(problem, result.excitation_error, options.correct_bias, jacobian, options.statistics, result.statistics);
+    result.excitation_error = simulate_excitation_error(problem, result.x_uncorrected,
+                                                        std::vector<bool>(static_cast<std::size_t>(n), false),
+                                                        options.excitation_noise, options.problem.threads);
+    widen(problem, result.excitation_error, options.correct_bias, jacobian, options.statistics,
+          result.statistics);
     if (options.correct_bias) result.x = result.excitation_error.x;
   }
 
   result.subject = problem.subject(result.x);
   result.subject.name = options.subject_name;
-  result.subject.verdicts = verdicts({&result.parameters, result.x, result.x_uncorrected, result.excitation_error.bias,
-                                      &result.statistics, problem.gain_strength_pairs()});
+  result.subject.verdicts =
+      verdicts({&result.parameters, result.x, result.x_uncorrected, result.excitation_error.bias,
+                &result.statistics, problem.gain_strength_pairs()});
   add_metrics(problem, result);
   std::string names;
   for (const CalibrationTrial& trial : trials) names += (names.empty() ? "" : ", ") + trial.name;
@@ -171,9 +182,11 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
   provenance["training_trials"] = names;
   provenance["scene"] = scene.title;
   provenance["solver"] = to_string(options.solver.solver);
-  provenance["solver_message"] = result.summary.message().substr(0, result.summary.message().rfind(','));  // no times
+  provenance["solver_message"] =
+      result.summary.message().substr(0, result.summary.message().rfind(','));  // no times
   provenance["intervals"] = fmt::format(
-      "95 %, Student t with {:.0f} degrees of freedom; Newey-West sandwich{}", result.statistics.degrees_of_freedom,
+      "95 %, Student t with {:.0f} degrees of freedom; Newey-West sandwich{}",
+      result.statistics.degrees_of_freedom,
       options.excitation_noise.coefficient_of_variation != 0.0
           ? fmt::format(", corrected score with {} simulated data sets (CV of the excitations {:.3f})",
                         result.excitation_error.replicates, options.excitation_noise.coefficient_of_variation)
@@ -202,7 +215,8 @@ Prediction predict(const data::Scene& scene, const data::Subject& subject, const
   const CalibrationProblem problem(with_subject(scene, subject), {trial}, own);
   VectorXd residuals;
   problem.evaluator()->evaluate(VectorXd(), residuals, nullptr);
-  return {trial.name, problem.times_s(0), problem.reference_N_m(0), problem.modelled_N_m(0, residuals), problem.windows()[0]};
+  return {trial.name, problem.times_s(0), problem.reference_N_m(0), problem.modelled_N_m(0, residuals),
+          problem.windows()[0]};
 }
 
 }  // namespace brachium::optimise

@@ -16,26 +16,28 @@ namespace brachium::optimise {
 
 struct CalibrationOptions {
   CalibrationProblemOptions problem;
-  bool linear_strength_first = true;  ///< start from the bounded linear fit of strengths (where strengths are free)
+  bool linear_strength_first =
+      true;  ///< start from the bounded linear fit of strengths (where strengths are free)
   SolveOptions solver;
   StatisticsOptions statistics;
   ExcitationNoise excitation_noise;
-  bool correct_bias = true;           ///< take the estimated bias off the fitted values (inside the bounds)
+  bool correct_bias = true;  ///< take the estimated bias off the fitted values (inside the bounds)
   std::string subject_name;
 };
 
 struct CalibrationResult {
-  data::Subject subject;             ///< fitted values, verdicts, statistics; provenance holds trials and options
-  Eigen::VectorXd x;                 ///< fitted parameters (bias removed if so asked)
-  Eigen::VectorXd x_uncorrected;     ///< the least-squares solution
+  data::Subject subject;  ///< fitted values, verdicts, statistics; provenance holds trials and options
+  Eigen::VectorXd x;      ///< fitted parameters (bias removed if so asked)
+  Eigen::VectorXd x_uncorrected;  ///< the least-squares solution
   std::vector<Parameter> parameters;
   Summary summary;
-  FitStatistics statistics;          ///< covariance with the share of the excitation's noise
+  FitStatistics statistics;  ///< covariance with the share of the excitation's noise
   ExcitationErrorResult excitation_error;
   std::vector<TrialWindow> windows;
   std::vector<Metrics> trial_metrics;  ///< on the training trials
   Metrics pooled;
-  std::vector<data::Diagnostic> diagnostics;  ///< warnings and notes: weak directions, bounds, excitations above 1
+  std::vector<data::Diagnostic>
+      diagnostics;  ///< warnings and notes: weak directions, bounds, excitations above 1
 };
 
 /// Fits. Throws InputError as CalibrationProblem does, and data::ConvergenceFailure if no start succeeds.
@@ -51,8 +53,8 @@ struct Prediction {
 Prediction predict(const data::Scene& scene, const data::Subject& subject, const CalibrationTrial& trial,
                    const CalibrationProblemOptions& options);
 
-/// The scene with a subject's parameters in place of its own; throws InputError("missing-muscle") for a muscle that
-/// the subject does not know.
+/// The scene with a subject's parameters in place of its own; throws InputError("missing-muscle") for a
+/// muscle that the subject does not know.
 data::Scene with_subject(data::Scene scene, const data::Subject& subject);
 
 }  // namespace brachium::optimise

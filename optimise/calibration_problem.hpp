@@ -1,6 +1,6 @@
 #pragma once
-/// Calibration as a least-squares problem: excitations and angle in, moment out, parameters free by muscle, by
-/// group or for all.
+/// Calibration as a least-squares problem: excitations and angle in, moment out, parameters free by muscle,
+/// by group or for all.
 ///
 ///     r_i = (M_model(t_i; x) - M_reference(t_i)) / sigma,      t_i the reference's own time stamps
 ///
@@ -36,14 +36,14 @@ struct CalibrationTrial {
   data::Signal angle;                     ///< [rad]
   std::optional<data::Signal> velocity;   ///< [rad/s]; from the angle (cubic spline) if absent
   data::Signal moment;                    ///< reference moment at the joint [N m]
-  /// Which of the moment's samples are to be compared (a dynamometer's constant velocity, a hinge axis that is known);
-  /// as long as the moment, or empty: all.
+  /// Which of the moment's samples are to be compared (a dynamometer's constant velocity, a hinge axis that
+  /// is known); as long as the moment, or empty: all.
   std::vector<bool> use;
 };
 
 /// A trial's first signals of quantity excitation, joint_angle, joint_velocity and joint_moment (of the given
-/// coordinate where signals name one). Throws InputError("missing-signal") naming trial and quantity: an absent
-/// reference moment is named "missing-moment".
+/// coordinate where signals name one). Throws InputError("missing-signal") naming trial and quantity: an
+/// absent reference moment is named "missing-moment".
 CalibrationTrial calibration_trial(const data::Trial& trial, const std::string& coordinate);
 
 enum class Quantity {
@@ -60,53 +60,55 @@ enum class Quantity {
   shape,                     ///< A [1]
   gain                       ///< of a channel [1]
 };
-std::string to_string(Quantity quantity);              ///< "tendon_slack_length"
-Quantity parse_quantity(const std::string& name);      ///< throws InputError("unknown-parameter") with the nearest
+std::string to_string(Quantity quantity);  ///< "tendon_slack_length"
+Quantity parse_quantity(
+    const std::string& name);  ///< throws InputError("unknown-parameter") with the nearest
 
 enum class Scope { each, group, global };  ///< one value a muscle (channel), a group, or for all
 std::string to_string(Scope scope);
 Scope parse_scope(const std::string& name);  ///< "muscle" (or "channel"), "group", "global"
 
-/// One kind of parameter set free. Lengths, pennation and v_max that are shared by a group or by all are shared as
-/// a factor on each muscle's own start (parameter "..._factor"); other quantities as a value.
+/// One kind of parameter set free. Lengths, pennation and v_max that are shared by a group or by all are
+/// shared as a factor on each muscle's own start (parameter "..._factor"); other quantities as a value.
 struct FreeQuantity {
   Quantity quantity = Quantity::strength;
   Scope scope = Scope::each;
-  std::vector<std::string> only;   ///< muscles, groups or channels it is restricted to (patterns); empty: all
+  std::vector<std::string> only;  ///< muscles, groups or channels it is restricted to (patterns); empty: all
   std::optional<double> lower, upper;
-  bool relative = false;           ///< bounds, and a prior, are factors on the start
+  bool relative = false;             ///< bounds, and a prior, are factors on the start
   std::optional<double> prior_mean;  ///< default: the start
   std::optional<double> prior_sd;    ///< none: no prior
 };
 /// Bounds used where none are given: strength 0.5 - 2.5, lengths x 0.85 - 1.15, pennation x 0.8 - 1.2,
 /// v_max x 0.5 - 1.5, delay 0 - 0.125 s, time constants 0.0075 - 0.060 s, recursion -0.95 - -0.05, shape
-/// -2.999 - -0.001 (Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004), gain 0.05 - 20.
+/// -2.999 - -0.001 (Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004), gain 0.05
+/// - 20.
 FreeQuantity with_default_bounds(FreeQuantity free);
 
 struct CalibrationProblemOptions {
-  std::string coordinate;                ///< of the moment; default: the scene's only one
+  std::string coordinate;  ///< of the moment; default: the scene's only one
   ModelChoice model;
   std::vector<FreeQuantity> free;
-  std::optional<double> scale_N_m;       ///< sigma; default: pooled SD of the reference about the set's mean
+  std::optional<double> scale_N_m;  ///< sigma; default: pooled SD of the reference about the set's mean
   /// Independent samples a second that the data are believed to hold. Residuals are then weighted by
-  /// sqrt(independent_rate / sampling rate), so that priors count as many observations as they should; sigma is then
-  /// the expected error of the moment. Default: every sample counts fully.
+  /// sqrt(independent_rate / sampling rate), so that priors count as many observations as they should; sigma
+  /// is then the expected error of the moment. Default: every sample counts fully.
   std::optional<double> independent_rate_hz;
   std::map<std::string, double> channel_gains;  ///< gains of channels (start, or fixed); 1 where absent
-  double edge_s = 0.0;                   ///< dropped at both ends of each trial's common span, beside what follows
-  std::size_t decimate = 1;              ///< take every n-th sample of the reference as a residual
-  std::size_t threads = 1;               ///< muscles and trials in parallel (0: all cores); results do not depend on it
+  double edge_s = 0.0;       ///< dropped at both ends of each trial's common span, beside what follows
+  std::size_t decimate = 1;  ///< take every n-th sample of the reference as a residual
+  std::size_t threads = 1;   ///< muscles and trials in parallel (0: all cores); results do not depend on it
 };
 
 /// What was left out of a trial, and what was used.
 struct TrialWindow {
   std::string name;
   double first_time_s = 0.0, last_time_s = 0.0;
-  std::size_t used = 0;            ///< reference samples that became residuals
+  std::size_t used = 0;               ///< reference samples that became residuals
   std::size_t before = 0, after = 0;  ///< reference samples outside the window, by end
   std::size_t masked = 0;             ///< reference samples inside it that `use` leaves out
-  std::size_t above_one = 0;       ///< excitation samples above 1, all channels, at starting gains
-  std::size_t below_zero = 0;      ///< and below 0, as zero-lag filters leave them
+  std::size_t above_one = 0;          ///< excitation samples above 1, all channels, at starting gains
+  std::size_t below_zero = 0;         ///< and below 0, as zero-lag filters leave them
 };
 
 /// One muscle on one trial, at the reference's samples inside the common span (frames).
@@ -122,15 +124,16 @@ struct EvaluationCount {
   std::size_t reused = 0;         ///< taken from the cache instead
 };
 
-/// The problem; const and shared by threads. A muscle is run again only where a parameter other than its strength
-/// has changed since the last point.
+/// The problem; const and shared by threads. A muscle is run again only where a parameter other than its
+/// strength has changed since the last point.
 class CalibrationProblem final : public LeastSquaresProblem {
  public:
   /// Throws InputError with every mistake found: "no-trials", "duplicate-trial", "unmapped-channel",
-  /// "missing-moment", "zero-variance-moment" (the pooled reference moment does not vary and no scale is given),
-  /// "empty-window", "rate-mismatch", "angle-out-of-range", "bad-parameter", "bad-bounds", "no-match". With nothing set
-  /// free it is still good for prediction.
-  CalibrationProblem(data::Scene scene, std::vector<CalibrationTrial> trials, CalibrationProblemOptions options);
+  /// "missing-moment", "zero-variance-moment" (the pooled reference moment does not vary and no scale is
+  /// given), "empty-window", "rate-mismatch", "angle-out-of-range", "bad-parameter", "bad-bounds",
+  /// "no-match". With nothing set free it is still good for prediction.
+  CalibrationProblem(data::Scene scene, std::vector<CalibrationTrial> trials,
+                     CalibrationProblemOptions options);
   ~CalibrationProblem() override;
 
   const std::vector<Parameter>& parameters() const override;
@@ -143,8 +146,8 @@ class CalibrationProblem final : public LeastSquaresProblem {
   const std::vector<TrialWindow>& windows() const;
   const std::vector<std::string>& channels() const;  ///< that drive a muscle
   const std::vector<std::string>& undriven() const;
-  double scale_N_m() const;                          ///< sigma
-  double residual_weight(std::size_t trial) const;   ///< r = weight (M - M_reference) [1 / (N m)]
+  double scale_N_m() const;                         ///< sigma
+  double residual_weight(std::size_t trial) const;  ///< r = weight (M - M_reference) [1 / (N m)]
   std::vector<ResidualBlock> blocks() const;
   std::vector<double> times_s(std::size_t trial) const;
   std::vector<double> reference_N_m(std::size_t trial) const;  ///< at times_s
@@ -157,8 +160,9 @@ class CalibrationProblem final : public LeastSquaresProblem {
   data::Subject subject(const Eigen::VectorXd& x) const;
   /// Indices of the strength parameters: the moment is linear in them.
   std::vector<std::size_t> strength_parameters() const;
-  /// Free gains and free strengths of muscles they drive, neither with a prior (indices of parameters): what the data fix
-  /// without a maximal contraction is their product; what tells them apart is only the model's curvature.
+  /// Free gains and free strengths of muscles they drive, neither with a prior (indices of parameters): what
+  /// the data fix without a maximal contraction is their product; what tells them apart is only the model's
+  /// curvature.
   std::vector<std::pair<std::size_t, std::size_t>> gain_strength_pairs() const;
   /// The same trials with other excitations on the same grids: for studies of errors in the excitation.
   /// samples[trial][channel], channels in the order of channels().

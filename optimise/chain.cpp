@@ -10,18 +10,26 @@ namespace {
 
 hill::MuscleParameter hill_parameter(Quantity quantity) {
   switch (quantity) {
-    case Quantity::optimal_fibre_length: return hill::MuscleParameter::optimal_fibre_length;
-    case Quantity::tendon_slack_length: return hill::MuscleParameter::tendon_slack_length;
-    case Quantity::pennation: return hill::MuscleParameter::pennation;
-    case Quantity::max_contraction_velocity: return hill::MuscleParameter::max_contraction_velocity;
-    default: return hill::MuscleParameter::strength;
+    case Quantity::optimal_fibre_length:
+      return hill::MuscleParameter::optimal_fibre_length;
+    case Quantity::tendon_slack_length:
+      return hill::MuscleParameter::tendon_slack_length;
+    case Quantity::pennation:
+      return hill::MuscleParameter::pennation;
+    case Quantity::max_contraction_velocity:
+      return hill::MuscleParameter::max_contraction_velocity;
+    default:
+      return hill::MuscleParameter::strength;
   }
 }
 
-bool acts_on_activation(const Slot& slot) { return is_activation(slot.quantity) || slot.quantity == Quantity::gain; }
+bool acts_on_activation(const Slot& slot) {
+  return is_activation(slot.quantity) || slot.quantity == Quantity::gain;
+}
 
 emg::RecursionParameters recursion(const ChainValues::Muscle& values, const ModelChoice& model) {
-  return {values.recursion_1, values.recursion_2, values.activation.delay_s, values.activation.shape, model.recursion_rate_hz};
+  return {values.recursion_1, values.recursion_2, values.activation.delay_s, values.activation.shape,
+          model.recursion_rate_hz};
 }
 
 }  // namespace
@@ -39,7 +47,8 @@ void MuscleRun::activate(const Chain& chain, std::size_t muscle, const PreparedT
   }
   excitation_.assign(n, 0.0);
   for (std::size_t k = 0; k < channel_samples.size(); ++k) {
-    const double w = chain.weights(static_cast<Eigen::Index>(muscle), static_cast<Eigen::Index>(k)) * values.gains[k];
+    const double w =
+        chain.weights(static_cast<Eigen::Index>(muscle), static_cast<Eigen::Index>(k)) * values.gains[k];
     if (w == 0.0) continue;
     for (std::size_t i = 0; i < n; ++i) excitation_[i] += w * channel_samples[k][i];
   }
@@ -52,13 +61,22 @@ void MuscleRun::activate(const Chain& chain, std::size_t muscle, const PreparedT
       if (!acts_on_activation(slots[s])) continue;
       fine_tangent_[s].resize(n);
       switch (slots[s].quantity) {
-        case Quantity::delay: wanted.delay = fine_tangent_[s]; break;
+        case Quantity::delay:
+          wanted.delay = fine_tangent_[s];
+          break;
         case Quantity::time_constant_1:
-        case Quantity::recursion_1: wanted.dynamics_1 = fine_tangent_[s]; break;
+        case Quantity::recursion_1:
+          wanted.dynamics_1 = fine_tangent_[s];
+          break;
         case Quantity::time_constant_2:
-        case Quantity::recursion_2: wanted.dynamics_2 = fine_tangent_[s]; break;
-        case Quantity::shape: wanted.shape = fine_tangent_[s]; break;
-        default: any_gain = true;
+        case Quantity::recursion_2:
+          wanted.dynamics_2 = fine_tangent_[s];
+          break;
+        case Quantity::shape:
+          wanted.shape = fine_tangent_[s];
+          break;
+        default:
+          any_gain = true;
       }
     }
     if (any_gain) {
@@ -70,9 +88,11 @@ void MuscleRun::activate(const Chain& chain, std::size_t muscle, const PreparedT
   const auto& own = values.muscles[muscle];
   const bool recursive = model.activation.form == emg::ActivationForm::recursive;
   if (recursive)
-    emg::activate_with_tangents(model.activation, recursion(own, model), excitation_, trial.excitation_rate_hz, fine_, wanted);
+    emg::activate_with_tangents(model.activation, recursion(own, model), excitation_,
+                                trial.excitation_rate_hz, fine_, wanted);
   else
-    emg::activate_with_tangents(model.activation, own.activation, excitation_, trial.excitation_rate_hz, fine_, wanted);
+    emg::activate_with_tangents(model.activation, own.activation, excitation_, trial.excitation_rate_hz,
+                                fine_, wanted);
   if (any_gain) {
     // da/dg_k = a'(u) w_k L e_k
     const emg::ShapedNonlinearity shaped(model.activation.nonlinearity, own.activation.shape);
@@ -84,9 +104,11 @@ void MuscleRun::activate(const Chain& chain, std::size_t muscle, const PreparedT
       const double w = chain.weights(static_cast<Eigen::Index>(muscle), static_cast<Eigen::Index>(k));
       auto& out = fine_tangent_[s];
       if (recursive)
-        emg::neural_response(model.activation, recursion(own, model), channel_samples[k], trial.excitation_rate_hz, out);
+        emg::neural_response(model.activation, recursion(own, model), channel_samples[k],
+                             trial.excitation_rate_hz, out);
       else
-        emg::neural_response(model.activation, own.activation, channel_samples[k], trial.excitation_rate_hz, out);
+        emg::neural_response(model.activation, own.activation, channel_samples[k], trial.excitation_rate_hz,
+                             out);
       for (std::size_t i = 0; i < n; ++i) out[i] *= w * work_[i];
     }
   }
@@ -107,18 +129,23 @@ void MuscleRun::activate(const Chain& chain, std::size_t muscle, const PreparedT
 }
 
 bool MuscleRun::update(const Chain& chain, std::size_t muscle, const PreparedTrial& trial,
-                       const std::vector<std::vector<double>>& channel_samples, const ChainValues& values, bool tangents) {
+                       const std::vector<std::vector<double>>& channel_samples, const ChainValues& values,
+                       bool tangents) {
   const auto& own = values.muscles[muscle];
-  std::vector<double> activation_key = {own.activation.delay_s, own.activation.time_constant_1_s,
-                                        own.activation.time_constant_2_s, own.recursion_1, own.recursion_2,
+  std::vector<double> activation_key = {own.activation.delay_s,
+                                        own.activation.time_constant_1_s,
+                                        own.activation.time_constant_2_s,
+                                        own.recursion_1,
+                                        own.recursion_2,
                                         own.activation.shape};
   for (std::size_t k = 0; k < values.gains.size(); ++k)
     if (chain.weights(static_cast<Eigen::Index>(muscle), static_cast<Eigen::Index>(k)) != 0.0)
       activation_key.push_back(values.gains[k]);
   const auto& p = own.parameters;
-  std::vector<double> hill_key = {p.optimal_fibre_length_m, p.tendon_slack_length_m, p.pennation_at_optimal_rad,
-                                  p.max_contraction_velocity};
-  const bool activation_stands = valid_ && activation_key == activation_key_ && (activation_tangents_ || !tangents);
+  std::vector<double> hill_key = {p.optimal_fibre_length_m, p.tendon_slack_length_m,
+                                  p.pennation_at_optimal_rad, p.max_contraction_velocity};
+  const bool activation_stands =
+      valid_ && activation_key == activation_key_ && (activation_tangents_ || !tangents);
   const bool force_stands = activation_stands && hill_key == hill_key_ && (force_tangents_ || !tangents);
   if (force_stands) return false;
   valid_ = false;  // until all of it has been computed
@@ -136,8 +163,10 @@ bool MuscleRun::update(const Chain& chain, std::size_t muscle, const PreparedTri
       dforce_[s].resize(trial.frame_time_s.size());
       hill::Tangent tangent;
       tangent.dforce = dforce_[s];
-      if (acts_on_activation(slots[s])) tangent.dactivation = dactivation_[s];
-      else tangent.parameter = hill_parameter(slots[s].quantity);
+      if (acts_on_activation(slots[s]))
+        tangent.dactivation = dactivation_[s];
+      else
+        tangent.parameter = hill_parameter(slots[s].quantity);
       wanted.push_back(tangent);
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// The chain of a calibration: excitation -> activation -> force -> moment, prepared once, with caches per muscle and
-/// trial. Internal to optimise/.
+/// The chain of a calibration: excitation -> activation -> force -> moment, prepared once, with caches per
+/// muscle and trial. Internal to optimise/.
 
 #include <Eigen/Core>
 #include <memory>
@@ -25,11 +25,11 @@ struct PreparedTrial {
   std::vector<std::vector<double>> length_m, velocity_m_s, arm_m;  ///< by muscle, at the frames
   double excitation_rate_hz = 0.0;
   std::size_t excitation_count = 0;
-  Resampling to_frames;              ///< from the excitations' grid
-  std::vector<std::size_t> rows;     ///< frames that are residuals
-  std::vector<double> reference;     ///< [N m] at rows
-  double weight = 1.0;               ///< of a residual [1 / (N m)]
-  std::size_t first_row = 0;         ///< of all residuals
+  Resampling to_frames;           ///< from the excitations' grid
+  std::vector<std::size_t> rows;  ///< frames that are residuals
+  std::vector<double> reference;  ///< [N m] at rows
+  double weight = 1.0;            ///< of a residual [1 / (N m)]
+  std::size_t first_row = 0;      ///< of all residuals
   TrialWindow window;
 };
 
@@ -45,10 +45,10 @@ struct Chain {
   std::vector<data::SceneMuscle> muscles;  ///< on the coordinate
   std::vector<bool> driven;
   limb::DriveMap drive;
-  Eigen::MatrixXd weights;                 ///< muscles x channels
+  Eigen::MatrixXd weights;  ///< muscles x channels
   ChainValues start;
   FreeParameters free;
-  std::vector<std::vector<Slot>> slots;    ///< by muscle; strength apart
+  std::vector<std::vector<Slot>> slots;  ///< by muscle; strength apart
   double scale_N_m = 1.0;
   std::size_t residual_count = 0;
   hill::MuscleModelOptions muscle_options;
@@ -60,7 +60,8 @@ class MuscleRun {
  public:
   /// Brings the run up to date; true if the muscle was run, false if the cache served.
   bool update(const Chain& chain, std::size_t muscle, const PreparedTrial& trial,
-              const std::vector<std::vector<double>>& channel_samples, const ChainValues& values, bool tangents);
+              const std::vector<std::vector<double>>& channel_samples, const ChainValues& values,
+              bool tangents);
 
   /// Force at strength 1 [N], at the frames.
   const std::vector<double>& force() const { return trace_.force_N; }
@@ -71,7 +72,8 @@ class MuscleRun {
 
  private:
   void activate(const Chain& chain, std::size_t muscle, const PreparedTrial& trial,
-                const std::vector<std::vector<double>>& channel_samples, const ChainValues& values, bool tangents);
+                const std::vector<std::vector<double>>& channel_samples, const ChainValues& values,
+                bool tangents);
 
   std::vector<double> activation_key_, hill_key_;
   bool valid_ = false, activation_tangents_ = false, force_tangents_ = false;

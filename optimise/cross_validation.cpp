@@ -17,23 +17,26 @@ struct FoldOutput {
   std::vector<std::vector<TrialScore>> held_out, training;  ///< by model
 };
 
-std::vector<CalibrationTrial> pick(const std::vector<CalibrationTrial>& trials, const std::vector<std::string>& names) {
+std::vector<CalibrationTrial> pick(const std::vector<CalibrationTrial>& trials,
+                                   const std::vector<std::string>& names) {
   std::vector<CalibrationTrial> out;
   for (const CalibrationTrial& trial : trials)
     if (std::find(names.begin(), names.end(), trial.name) != names.end()) out.push_back(trial);
   return out;
 }
 
-TrialScore score(const std::string& trial, bool held_out, std::vector<double> time, std::vector<double> reference,
-                 std::vector<double> model) {
-  TrialScore out{trial, held_out, metrics(reference, model), std::move(time), std::move(reference), std::move(model)};
+TrialScore score(const std::string& trial, bool held_out, std::vector<double> time,
+                 std::vector<double> reference, std::vector<double> model) {
+  TrialScore out{trial,           held_out, metrics(reference, model), std::move(time), std::move(reference),
+                 std::move(model)};
   return out;
 }
 
 FoldOutput run_fold(const data::Scene& scene, const std::vector<CalibrationTrial>& trials, Fold fold,
                     const CrossValidationOptions& options) {
   FoldOutput out;
-  std::vector<CalibrationTrial> training = pick(trials, fold.training), held_out = pick(trials, fold.held_out);
+  std::vector<CalibrationTrial> training = pick(trials, fold.training),
+                                held_out = pick(trials, fold.held_out);
   if (options.normalise_by_training_maximum) {
     fold.channel_maximum = channel_maxima(training);
     training = scaled_by(std::move(training), fold.channel_maximum);
@@ -45,7 +48,8 @@ FoldOutput run_fold(const data::Scene& scene, const std::vector<CalibrationTrial
     CalibrationProblemOptions problem = options.calibration.problem;
     problem.decimate = 1;
     Prediction p = predict(scene, fold.calibration.subject, trial, problem);
-    return score(trial.name, held, std::move(p.time_s), std::move(p.reference_N_m), std::move(p.modelled_N_m));
+    return score(trial.name, held, std::move(p.time_s), std::move(p.reference_N_m),
+                 std::move(p.modelled_N_m));
   };
   out.held_out.resize(1 + options.baselines.size());
   out.training.resize(out.held_out.size());
@@ -55,7 +59,8 @@ FoldOutput run_fold(const data::Scene& scene, const std::vector<CalibrationTrial
     const Baseline baseline = fit_baseline(options.baselines[b], training, edge);
     const auto regressed = [&](const CalibrationTrial& trial, bool held) {
       BaselinePrediction p = predict(baseline, trial, edge);
-      return score(trial.name, held, std::move(p.time_s), std::move(p.reference_N_m), std::move(p.modelled_N_m));
+      return score(trial.name, held, std::move(p.time_s), std::move(p.reference_N_m),
+                   std::move(p.modelled_N_m));
     };
     for (const CalibrationTrial& trial : held_out) out.held_out[b + 1].push_back(regressed(trial, true));
     for (const CalibrationTrial& trial : training) out.training[b + 1].push_back(regressed(trial, false));
@@ -82,31 +87,41 @@ std::map<std::string, double> channel_maxima(const std::vector<CalibrationTrial>
       for (double value : channel.samples) out[channel.info.name] = std::max(out[channel.info.name], value);
   for (const auto& [name, value] : out)
     if (!(value > 0.0) || !std::isfinite(value))
-      throw data::InputError("constant-channel", fmt::format("channel `{}` has no positive sample: it cannot be normalised", name),
-                             "exclude the channel by name");
+      throw data::InputError(
+          "constant-channel",
+          fmt::format("channel `{}` has no positive sample: it cannot be normalised", name),
+          "exclude the channel by name");
   return out;
 }
 
-std::vector<CalibrationTrial> scaled_by(std::vector<CalibrationTrial> trials, const std::map<std::string, double>& maximum) {
+std::vector<CalibrationTrial> scaled_by(std::vector<CalibrationTrial> trials,
+                                        const std::map<std::string, double>& maximum) {
   for (CalibrationTrial& trial : trials) {
     for (data::Signal& channel : trial.excitations) {
       const auto found = maximum.find(channel.info.name);
       if (found == maximum.end())
-        throw data::InputError("unmapped-channel", fmt::format("trial `{}`: channel `{}` is in no training trial", trial.name,
-                                                               channel.info.name));
+        throw data::InputError(
+            "unmapped-channel",
+            fmt::format("trial `{}`: channel `{}` is in no training trial", trial.name, channel.info.name));
       for (double& value : channel.samples) value /= found->second;
     }
   }
   return trials;
 }
 
-std::vector<data::Diagnostic> check_split(const std::vector<std::string>& training, const std::vector<std::string>& judged) {
+std::vector<data::Diagnostic> check_split(const std::vector<std::string>& training,
+                                          const std::vector<std::string>& judged) {
   std::vector<data::Diagnostic> out;
   for (const std::string& trial : judged)
     if (std::find(training.begin(), training.end(), trial) != training.end())
-      out.push_back({data::Severity::warning, "trained-and-judged",
-                     fmt::format("trial `{}` is used for both training and verdict: its error says nothing of unseen trials", trial),
-                     {}, "hold it out of the training"});
+      out.push_back(
+          {data::Severity::warning,
+           "trained-and-judged",
+           fmt::format(
+               "trial `{}` is used for both training and verdict: its error says nothing of unseen trials",
+               trial),
+           {},
+           "hold it out of the training"});
   return out;
 }
 
@@ -115,8 +130,9 @@ CrossValidationResult cross_validate(const data::Scene& scene, const std::vector
   std::vector<std::string> names;
   for (const CalibrationTrial& trial : trials) names.push_back(trial.name);
   if (names.size() < 2)
-    throw data::InputError("too-few-trials", fmt::format("cross-validation by trial needs at least two trials, there {} {}",
-                                                         names.size() == 1 ? "is" : "are", names.size()));
+    throw data::InputError("too-few-trials",
+                           fmt::format("cross-validation by trial needs at least two trials, there {} {}",
+                                       names.size() == 1 ? "is" : "are", names.size()));
   std::vector<Fold> folds;
   const auto fold_without = [&](const std::vector<std::string>& held_out) {
     Fold fold;
@@ -130,7 +146,8 @@ CrossValidationResult cross_validate(const data::Scene& scene, const std::vector
   } else {
     folds.push_back(fold_without(data::match_names(options.hold_out, names, "trial")));
     if (folds.back().training.empty())
-      throw data::InputError("too-few-trials", "every trial is held out: none is left to train on", "hold out fewer trials");
+      throw data::InputError("too-few-trials", "every trial is held out: none is left to train on",
+                             "hold out fewer trials");
   }
 
   std::vector<FoldOutput> outputs(folds.size());
@@ -152,7 +169,8 @@ CrossValidationResult cross_validate(const data::Scene& scene, const std::vector
   }
   for (FoldOutput& output : outputs) {
     for (data::Diagnostic diagnostic : output.fold.calibration.diagnostics) {
-      diagnostic.message = fmt::format("without `{}`: {}", fmt::join(output.fold.held_out, "`, `"), diagnostic.message);
+      diagnostic.message =
+          fmt::format("without `{}`: {}", fmt::join(output.fold.held_out, "`, `"), diagnostic.message);
       result.diagnostics.push_back(std::move(diagnostic));
     }
     result.folds.push_back(std::move(output.fold));
@@ -180,8 +198,9 @@ data::Table CrossValidationResult::table() const {
   for (const ModelScore& m : models) add(m.model, "all trials, pooled", "training", m.pooled_training);
   data::Table table;
   table.title = "Errors of the moment, by model and trial";
-  table.columns = {{"model", "", model}, {"trial", "", trial},  {"set", "", set},    {"samples", "1", count}, {"rmse", "N m", rmse},
-                   {"nrmse_range", "1", nrmse}, {"r2", "1", r2}, {"bias", "N m", bias}};
+  table.columns = {{"model", "", model},    {"trial", "", trial},  {"set", "", set},
+                   {"samples", "1", count}, {"rmse", "N m", rmse}, {"nrmse_range", "1", nrmse},
+                   {"r2", "1", r2},         {"bias", "N m", bias}};
   return table;
 }
 

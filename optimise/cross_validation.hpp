@@ -2,7 +2,8 @@
 /// Cross-validation by trial: calibrated on some trials, judged on others that the calibration never saw.
 ///
 /// Everything that depends on data is computed anew in each fold from its training trials alone: the fit, its
-/// scale, the normalisation of channels without an MVC (a factor of one on their training maximum), the baselines.
+/// scale, the normalisation of channels without an MVC (a factor of one on their training maximum), the
+/// baselines.
 
 #include <map>
 #include <string>
@@ -18,7 +19,8 @@ struct CrossValidationOptions {
   CalibrationOptions calibration;
   /// Named trials held out together (patterns); empty: leave one trial out, each in turn.
   std::vector<std::string> hold_out;
-  /// Divide each channel by its largest excitation over the fold's training trials (recordings without an MVC).
+  /// Divide each channel by its largest excitation over the fold's training trials (recordings without an
+  /// MVC).
   bool normalise_by_training_maximum = false;
   std::vector<BaselineSpec> baselines = {{BaselineSpec::Kind::linear_envelope},
                                          {BaselineSpec::Kind::angle_polynomial},
@@ -52,7 +54,7 @@ struct CrossValidationResult {
   std::vector<Fold> folds;
   std::vector<ModelScore> models;  ///< muscle model first, then the baselines in their order
   std::vector<data::Diagnostic> diagnostics;
-  data::Table table() const;       ///< model, trial, held-out RMSE, NRMSE (range), R2, bias; pooled rows last
+  data::Table table() const;  ///< model, trial, held-out RMSE, NRMSE (range), R2, bias; pooled rows last
 };
 
 /// Throws InputError: "no-match" for a pattern, "too-few-trials", and as calibrate().
@@ -63,8 +65,8 @@ CrossValidationResult cross_validate(const data::Scene& scene, const std::vector
 std::vector<data::Diagnostic> check_split(const std::vector<std::string>& training,
                                           const std::vector<std::string>& judged);
 
-/// Each channel's largest excitation over the trials, and the trials divided by it. A channel without a positive
-/// sample throws InputError("constant-channel").
+/// Each channel's largest excitation over the trials, and the trials divided by it. A channel without a
+/// positive sample throws InputError("constant-channel").
 std::map<std::string, double> channel_maxima(const std::vector<CalibrationTrial>& trials);
 std::vector<CalibrationTrial> scaled_by(std::vector<CalibrationTrial> trials,
                                         const std::map<std::string, double>& channel_maximum);

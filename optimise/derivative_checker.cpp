@@ -14,8 +14,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kRows = 8;          // of Ridders' tableau
-constexpr double kShrink = 1.6;   // step ratio from row to row
+constexpr int kRows = 8;         // of Ridders' tableau
+constexpr double kShrink = 1.6;  // step ratio from row to row
 
 struct NumericColumn {
   VectorXd value, error;
@@ -58,15 +58,16 @@ DerivativeCheck check_derivatives(const LeastSquaresProblem& problem, const Vect
   const auto& parameters = problem.parameters();
   const VectorXd lower = lower_of(parameters), upper = upper_of(parameters);
   if (x.size() != lower.size() || !((x - lower).minCoeff() >= 0.0) || !((upper - x).minCoeff() >= 0.0))
-    throw data::InputError("out-of-range", "derivatives are to be checked at a point outside the parameters' bounds");
+    throw data::InputError("out-of-range",
+                           "derivatives are to be checked at a point outside the parameters' bounds");
   const auto m = static_cast<Index>(problem.residual_count());
   const auto evaluator = problem.evaluator();
   VectorXd r;
   Eigen::MatrixXd J;
   evaluator->evaluate(x, r, &J);
   if (J.rows() != m || J.cols() != x.size())
-    throw data::InputError("wrong-size", fmt::format("the Jacobian is {} x {}, it should be {} x {}", J.rows(), J.cols(), m,
-                                                     x.size()));
+    throw data::InputError("wrong-size", fmt::format("the Jacobian is {} x {}, it should be {} x {}",
+                                                     J.rows(), J.cols(), m, x.size()));
 
   DerivativeCheck check;
   check.passed = true;
@@ -74,13 +75,14 @@ DerivativeCheck check_derivatives(const LeastSquaresProblem& problem, const Vect
     double h = options.initial_step * parameters[static_cast<std::size_t>(j)].scale;
     if (options.respect_bounds) h = std::min({h, x[j] - lower[j], upper[j] - x[j]});
     if (!(h > 0.0))
-      throw data::InputError("out-of-range",
-                             fmt::format("parameter `{}` lies on its bound: no two-sided difference can be taken",
-                                         parameters[static_cast<std::size_t>(j)].label()),
-                             "check at a point inside the bounds");
+      throw data::InputError(
+          "out-of-range",
+          fmt::format("parameter `{}` lies on its bound: no two-sided difference can be taken",
+                      parameters[static_cast<std::size_t>(j)].label()),
+          "check at a point inside the bounds");
     const NumericColumn numeric = numeric_column(*evaluator, x, j, h, m);
-    const double floor = options.floor_fraction *
-                         std::max(J.col(j).lpNorm<Eigen::Infinity>(), numeric.value.lpNorm<Eigen::Infinity>());
+    const double floor = options.floor_fraction * std::max(J.col(j).lpNorm<Eigen::Infinity>(),
+                                                           numeric.value.lpNorm<Eigen::Infinity>());
     DerivativeMismatch worst;
     for (Index i = 0; i < m; ++i) {
       const double size = std::max({std::abs(J(i, j)), std::abs(numeric.value[i]), floor, 1e-300});
@@ -88,8 +90,13 @@ DerivativeCheck check_derivatives(const LeastSquaresProblem& problem, const Vect
       const double relative = difference / size;
       check.worst_relative_error = std::max(check.worst_relative_error, relative);
       if (!(relative <= worst.relative_error) || i == 0) {
-        worst = {parameters[static_cast<std::size_t>(j)].label(), problem.residual_name(static_cast<std::size_t>(i)),
-                 static_cast<std::size_t>(i), static_cast<std::size_t>(j), J(i, j), numeric.value[i], numeric.error[i],
+        worst = {parameters[static_cast<std::size_t>(j)].label(),
+                 problem.residual_name(static_cast<std::size_t>(i)),
+                 static_cast<std::size_t>(i),
+                 static_cast<std::size_t>(j),
+                 J(i, j),
+                 numeric.value[i],
+                 numeric.error[i],
                  relative};
       }
     }
@@ -107,8 +114,9 @@ std::string DerivativeCheck::text() const {
   if (passed) return fmt::format("passed (worst {:.1e})", worst_relative_error);
   std::string out;
   for (const DerivativeMismatch& w : worst)
-    out += fmt::format("wrong derivative: `{}` at {}: analytic {:.9g}, numeric {:.9g} (+-{:.1g}), relative error {:.2g}\n",
-                       w.parameter, w.residual, w.analytic, w.numeric, w.numeric_error, w.relative_error);
+    out += fmt::format(
+        "wrong derivative: `{}` at {}: analytic {:.9g}, numeric {:.9g} (+-{:.1g}), relative error {:.2g}\n",
+        w.parameter, w.residual, w.analytic, w.numeric, w.numeric_error, w.relative_error);
   return out;
 }
 

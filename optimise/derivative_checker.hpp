@@ -10,9 +10,10 @@ namespace brachium::optimise {
 
 struct DerivativeCheckOptions {
   double relative_tolerance = 1e-6;  ///< of |J_ij| and of the largest entry of column j times floor_fraction
-  double floor_fraction = 1e-3;      ///< entries below this fraction of their column's largest are compared with it
-  double initial_step = 1e-2;        ///< first difference step, as a fraction of the parameter's scale
-  bool respect_bounds = true;        ///< steps that would leave the bounds are made smaller
+  double floor_fraction =
+      1e-3;                    ///< entries below this fraction of their column's largest are compared with it
+  double initial_step = 1e-2;  ///< first difference step, as a fraction of the parameter's scale
+  bool respect_bounds = true;  ///< steps that would leave the bounds are made smaller
 };
 
 /// One entry that does not agree.
@@ -21,7 +22,7 @@ struct DerivativeMismatch {
   std::string residual;   ///< name of the residual
   std::size_t row = 0, column = 0;
   double analytic = 0.0, numeric = 0.0;
-  double numeric_error = 0.0;   ///< Ridders' own estimate of the error of `numeric`
+  double numeric_error = 0.0;  ///< Ridders' own estimate of the error of `numeric`
   double relative_error = 0.0;
 };
 
@@ -29,7 +30,7 @@ struct DerivativeCheck {
   bool passed = false;
   double worst_relative_error = 0.0;
   std::vector<DerivativeMismatch> worst;  ///< the worst entry of every parameter that fails, worst first
-  std::string text() const;               ///< for a log: "passed (worst 3e-9)" or one line per failing parameter
+  std::string text() const;  ///< for a log: "passed (worst 3e-9)" or one line per failing parameter
 };
 
 /// Checks all columns at x. Entries whose numeric estimate is itself uncertain by more than the tolerance are

@@ -33,7 +33,8 @@ struct LowPass {
   double b0, a1, a2;
 
   LowPass(double edge_hz, double rate_hz) {
-    const double w = std::tan(std::numbers::pi * std::min(edge_hz / rate_hz, 0.49)), norm = 1.0 + std::numbers::sqrt2 * w + w * w;
+    const double w = std::tan(std::numbers::pi * std::min(edge_hz / rate_hz, 0.49)),
+                 norm = 1.0 + std::numbers::sqrt2 * w + w * w;
     b0 = w * w / norm;
     a1 = 2.0 * (w * w - 1.0) / norm;
     a2 = (1.0 - std::numbers::sqrt2 * w + w * w) / norm;
@@ -64,11 +65,13 @@ double rectified_autocovariance(double rho) {
 }
 
 /// Variance of the low-passed |x| / E|x| by the spectrum of |x|: integral of S(f) |H(f)|^2 over all f.
-double envelope_variance(const std::vector<double>& frequency_hz, const std::vector<double>& power, double cutoff_hz) {
+double envelope_variance(const std::vector<double>& frequency_hz, const std::vector<double>& power,
+                         double cutoff_hz) {
   const double top = frequency_hz.back();
   double total = 0.0;
   for (double p : power) total += p;
-  // Lags up to where rho has died out; the spectrum of |x| is flat over the low-pass's band, but is not assumed so.
+  // Lags up to where rho has died out; the spectrum of |x| is flat over the low-pass's band, but is not
+  // assumed so.
   const double step = 1.0 / (8.0 * top), longest = 0.5 / cutoff_hz + 0.25;
   const auto lags = static_cast<std::size_t>(longest / step);
   double variance = 0.0;
@@ -78,7 +81,8 @@ double envelope_variance(const std::vector<double>& frequency_hz, const std::vec
   for (std::size_t k = 0; k <= lags; ++k) {
     const double tau = static_cast<double>(k) * step;
     double rho = 0.0;
-    for (std::size_t i = 0; i < power.size(); ++i) rho += power[i] * std::cos(2.0 * std::numbers::pi * frequency_hz[i] * tau);
+    for (std::size_t i = 0; i < power.size(); ++i)
+      rho += power[i] * std::cos(2.0 * std::numbers::pi * frequency_hz[i] * tau);
     const double c = rectified_autocovariance(rho / total);
     if (std::abs(c) < 1e-12) continue;
     double filter = 0.0;
@@ -93,10 +97,11 @@ double envelope_variance(const std::vector<double>& frequency_hz, const std::vec
 
 constexpr double kLeastReliability = 0.15;
 
-/// White noise of a given standard deviation, sample by sample, through the low-pass, forward and backward: how an envelope's
-/// noise comes about. Ends are continued far enough for the filter's transients; unit deviation gives unit variance.
-std::vector<double> filtered_noise(const std::vector<double>& deviation, double rate_hz, double cutoff_hz, std::uint64_t seed,
-                                   std::uint64_t stream) {
+/// White noise of a given standard deviation, sample by sample, through the low-pass, forward and backward:
+/// how an envelope's noise comes about. Ends are continued far enough for the filter's transients; unit
+/// deviation gives unit variance.
+std::vector<double> filtered_noise(const std::vector<double>& deviation, double rate_hz, double cutoff_hz,
+                                   std::uint64_t seed, std::uint64_t stream) {
   const LowPass pass(cutoff_hz / std::pow(std::sqrt(2.0) - 1.0, 0.25), rate_hz);
   const auto margin = static_cast<std::size_t>(std::ceil(4.0 * rate_hz / cutoff_hz));
   const std::size_t count = deviation.size();
@@ -109,17 +114,21 @@ std::vector<double> filtered_noise(const std::vector<double>& deviation, double 
   pass.both_ways(x);
   pass.both_ways(impulse);
   for (double value : impulse) energy += value * value;
-  std::vector<double> out(x.begin() + static_cast<std::ptrdiff_t>(margin), x.begin() + static_cast<std::ptrdiff_t>(margin + count));
+  std::vector<double> out(x.begin() + static_cast<std::ptrdiff_t>(margin),
+                          x.begin() + static_cast<std::ptrdiff_t>(margin + count));
   for (double& value : out) value /= std::sqrt(energy);
   return out;
 }
 
-/// Excitations with one more dose of noise. Replicates 2i and 2i + 1 have opposite noise, so that what is odd in it cancels.
-CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, const ExcitationNoise& noise, std::size_t replicate) {
+/// Excitations with one more dose of noise. Replicates 2i and 2i + 1 have opposite noise, so that what is odd
+/// in it cancels.
+CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, const ExcitationNoise& noise,
+                                          std::size_t replicate) {
   CalibrationProblem::Samples out = problem.excitations();
   std::uint64_t stream = static_cast<std::uint64_t>(replicate / 2) << 20;
   // e_observed^2 exceeds e^2 by the factor 1 + c^2 in the mean: the dose is that much smaller.
-  const double c = noise.coefficient_of_variation / std::sqrt(1.0 + std::pow(noise.coefficient_of_variation, 2));
+  const double c =
+      noise.coefficient_of_variation / std::sqrt(1.0 + std::pow(noise.coefficient_of_variation, 2));
   for (std::size_t t = 0; t < out.size(); ++t) {
     for (auto& channel : out[t]) {
       std::vector<double> deviation(channel.size());
@@ -127,8 +136,10 @@ CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, con
         const double e = std::abs(channel[i]), f = noise.floor;
         deviation[i] = c * (f > 0.0 ? (e * e + f * f) / std::max(e, f) : e);
       }
-      const auto eta = filtered_noise(deviation, problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
-      for (std::size_t i = 0; i < channel.size(); ++i) channel[i] += (replicate % 2 == 0 ? 1.0 : -1.0) * eta[i];
+      const auto eta =
+          filtered_noise(deviation, problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
+      for (std::size_t i = 0; i < channel.size(); ++i)
+        channel[i] += (replicate % 2 == 0 ? 1.0 : -1.0) * eta[i];
     }
   }
   return out;
@@ -162,26 +173,29 @@ ScoreData score_of(const CalibrationProblem& problem, const VectorXd& u, bool ro
 
 /// The corrected score at one point.
 struct Corrected {
-  VectorXd score;             ///< priors included
-  MatrixXd H;                 ///< priors included, reliabilities limited from below
-  VectorXd noise_score;       ///< what one dose of noise adds to J'r
-  MatrixXd rows;              ///< corrected score by row
-  MatrixXd monte_carlo;       ///< covariance of the simulated part of the score
+  VectorXd score;        ///< priors included
+  MatrixXd H;            ///< priors included, reliabilities limited from below
+  VectorXd noise_score;  ///< what one dose of noise adds to J'r
+  MatrixXd rows;         ///< corrected score by row
+  MatrixXd monte_carlo;  ///< covariance of the simulated part of the score
   double reliability = 1.0, explained = 0.0;
   bool limited = false;
   std::size_t used = 0, failed = 0;
 };
 
 Corrected corrected_score(const CalibrationProblem& problem, const VectorXd& u, const VectorXd& prior_weight,
-                          const VectorXd& prior_mean, const ExcitationNoise& noise, std::size_t threads, bool rows) {
+                          const VectorXd& prior_mean, const ExcitationNoise& noise, std::size_t threads,
+                          bool rows) {
   const auto K = static_cast<std::size_t>(noise.replicates);
   const ScoreData base = score_of(problem, u, rows);
   if (!base.good)
-    throw data::ConvergenceFailure({"errors in the excitation", "the model has no value at the solution", 0, 0.0, 0.0, {}});
+    throw data::ConvergenceFailure(
+        {"errors in the excitation", "the model has no value at the solution", 0, 0.0, 0.0, {}});
   const Index n = u.size();
   Corrected out;
   VectorXd mean_score = VectorXd::Zero(n);
-  MatrixXd mean_information = MatrixXd::Zero(n, n), mean_rows = MatrixXd::Zero(base.rows.rows(), rows ? n : 0);
+  MatrixXd mean_information = MatrixXd::Zero(n, n),
+           mean_rows = MatrixXd::Zero(base.rows.rows(), rows ? n : 0);
   std::vector<VectorXd> pair_scores;
   double mean_square = 0.0;
   // A few pairs at a time, summed in their order: the same for any number of threads, in bounded memory.
@@ -208,8 +222,12 @@ Corrected corrected_score(const CalibrationProblem& problem, const VectorXd& u, 
     }
   }
   if (out.used < 4)
-    throw data::ConvergenceFailure({"errors in the excitation", "fewer than two pairs of simulated data have a value",
-                                    noise.replicates, 0.0, 0.0, {}});
+    throw data::ConvergenceFailure({"errors in the excitation",
+                                    "fewer than two pairs of simulated data have a value",
+                                    noise.replicates,
+                                    0.0,
+                                    0.0,
+                                    {}});
   const double count = static_cast<double>(out.used), pairs = 0.5 * count;
   mean_score /= count;
   mean_information /= count;
@@ -218,7 +236,8 @@ Corrected corrected_score(const CalibrationProblem& problem, const VectorXd& u, 
   out.explained = (mean_square / count - base.square) / static_cast<double>(problem.residual_count());
   if (rows) out.rows = 2.0 * base.rows - mean_rows / count;
   out.monte_carlo = MatrixXd::Zero(n, n);
-  for (const VectorXd& s : pair_scores) out.monte_carlo += (s - mean_score) * (s - mean_score).transpose() / (pairs * (pairs - 1.0));
+  for (const VectorXd& s : pair_scores)
+    out.monte_carlo += (s - mean_score) * (s - mean_score).transpose() / (pairs * (pairs - 1.0));
 
   MatrixXd H0 = base.information, H = 2.0 * base.information - mean_information;
   H0.diagonal() += prior_weight;
@@ -226,7 +245,8 @@ Corrected corrected_score(const CalibrationProblem& problem, const VectorXd& u, 
   H0.diagonal() += VectorXd::Constant(n, 1e-12 * std::max(H0.diagonal().maxCoeff(), 1e-300));
   const Eigen::LLT<MatrixXd> root(H0);
   const MatrixXd L = root.matrixL();
-  const MatrixXd whitened = L.triangularView<Eigen::Lower>().solve(L.triangularView<Eigen::Lower>().solve(H).transpose());
+  const MatrixXd whitened =
+      L.triangularView<Eigen::Lower>().solve(L.triangularView<Eigen::Lower>().solve(H).transpose());
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (whitened + whitened.transpose()));
   out.reliability = eigen.eigenvalues().minCoeff();
   out.limited = out.reliability < kLeastReliability;
@@ -236,8 +256,8 @@ Corrected corrected_score(const CalibrationProblem& problem, const VectorXd& u, 
 }
 
 /// Newton's step on the free parameters; those that reach a bound stop there.
-VectorXd newton_step(const MatrixXd& H, const VectorXd& score, const VectorXd& u, const VectorXd& lower, const VectorXd& upper,
-                     std::vector<bool> held) {
+VectorXd newton_step(const MatrixXd& H, const VectorXd& score, const VectorXd& u, const VectorXd& lower,
+                     const VectorXd& upper, std::vector<bool> held) {
   VectorXd p = VectorXd::Zero(u.size());
   for (Index pass = 0; pass <= u.size(); ++pass) {
     std::vector<Index> free;
@@ -277,9 +297,11 @@ std::vector<double> without_noise_floor(std::vector<double> envelope, double flo
   return envelope;
 }
 
-double effective_noise_floor(double floor, const std::vector<double>& emg_power, const std::vector<double>& noise_power) {
+double effective_noise_floor(double floor, const std::vector<double>& emg_power,
+                             const std::vector<double>& noise_power) {
   if (emg_power.size() != noise_power.size() || emg_power.empty())
-    throw data::InputError("wrong-size", "the spectra of EMG and sensor noise must be given on the same frequencies");
+    throw data::InputError("wrong-size",
+                           "the spectra of EMG and sensor noise must be given on the same frequencies");
   double e = 0.0, n = 0.0, ee = 0.0, en = 0.0;
   for (std::size_t i = 0; i < emg_power.size(); ++i) {
     e += emg_power[i];
@@ -287,21 +309,23 @@ double effective_noise_floor(double floor, const std::vector<double>& emg_power,
     ee += emg_power[i] * emg_power[i];
     en += emg_power[i] * noise_power[i];
   }
-  if (!(ee > 0.0) || !(n > 0.0)) throw data::InputError("out-of-range", "a spectrum without power has no noise floor");
+  if (!(ee > 0.0) || !(n > 0.0))
+    throw data::InputError("out-of-range", "a spectrum without power has no noise floor");
   return floor * std::sqrt(en * e / (ee * n));
 }
 
-double envelope_coefficient_of_variation(const std::vector<double>& frequency_hz, const std::vector<double>& power,
-                                         double cutoff_hz) {
+double envelope_coefficient_of_variation(const std::vector<double>& frequency_hz,
+                                         const std::vector<double>& power, double cutoff_hz) {
   if (frequency_hz.size() < 2 || frequency_hz.size() != power.size() || !(cutoff_hz > 0.0))
-    throw data::InputError("wrong-size", "a spectrum needs as many powers as frequencies, two at least, and a cut-off above 0");
+    throw data::InputError(
+        "wrong-size", "a spectrum needs as many powers as frequencies, two at least, and a cut-off above 0");
   return std::sqrt(std::max(envelope_variance(frequency_hz, power, cutoff_hz), 0.0));
 }
 
 double envelope_coefficient_of_variation(double lower_edge_hz, double upper_edge_hz, double cutoff_hz) {
   if (!(lower_edge_hz >= 0.0) || !(upper_edge_hz > lower_edge_hz) || !(cutoff_hz > 0.0))
-    throw data::InputError("out-of-range", fmt::format("band {} to {} Hz with cut-off {} Hz is not possible", lower_edge_hz,
-                                                       upper_edge_hz, cutoff_hz));
+    throw data::InputError("out-of-range", fmt::format("band {} to {} Hz with cut-off {} Hz is not possible",
+                                                       lower_edge_hz, upper_edge_hz, cutoff_hz));
   std::vector<double> frequency, power;
   const int bins = 400;
   for (int b = 0; b < bins; ++b) {
@@ -315,7 +339,8 @@ std::vector<double> envelope_noise(std::size_t count, double rate_hz, double cut
                                    std::uint64_t stream) {
   if (!(rate_hz > 0.0) || !(cutoff_hz > 0.0) || !(cutoff_hz < 0.4 * rate_hz))
     throw data::InputError("cutoff-above-nyquist",
-                           fmt::format("noise with cut-off {} Hz cannot be simulated on excitations at {} Hz", cutoff_hz, rate_hz));
+                           fmt::format("noise with cut-off {} Hz cannot be simulated on excitations at {} Hz",
+                                       cutoff_hz, rate_hz));
   return filtered_noise(std::vector<double>(count, 1.0), rate_hz, cutoff_hz, seed, stream);
 }
 
@@ -323,13 +348,14 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
                                                 const std::vector<bool>& fixed, const ExcitationNoise& noise,
                                                 std::size_t threads) {
   const Index n = x.size();
-  if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) || !(noise.floor >= 0.0) ||
-      !(noise.coefficient_uncertainty >= 0.0) || noise.replicates < 4 ||
+  if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) ||
+      !(noise.floor >= 0.0) || !(noise.coefficient_uncertainty >= 0.0) || noise.replicates < 4 ||
       noise.steps < 1 || !(noise.cutoff_hz > 0.0))
-    throw data::InputError("out-of-range",
-                           fmt::format("excitation noise: `coefficient_of_variation` {} >= 0, `floor` {} >= 0, `cutoff_hz` {} > 0, `replicates` "
-                                       "{} >= 4 and `steps` {} >= 1 are needed",
-                                       noise.coefficient_of_variation, noise.floor, noise.cutoff_hz, noise.replicates, noise.steps));
+    throw data::InputError("out-of-range", fmt::format("excitation noise: `coefficient_of_variation` {} >= "
+                                                       "0, `floor` {} >= 0, `cutoff_hz` {} > 0, `replicates` "
+                                                       "{} >= 4 and `steps` {} >= 1 are needed",
+                                                       noise.coefficient_of_variation, noise.floor,
+                                                       noise.cutoff_hz, noise.replicates, noise.steps));
   const auto& parameters = problem.parameters();
   const VectorXd scale = scale_of(parameters), lower = lower_of(parameters).cwiseQuotient(scale),
                  upper = upper_of(parameters).cwiseQuotient(scale);
@@ -347,7 +373,8 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
     const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, false);
     std::vector<bool> held = fixed;
     for (Index j = 0; j < n; ++j)  // at a bound, and pushed outward
-      if ((u[j] <= lower[j] && at.score[j] > 0.0) || (u[j] >= upper[j] && at.score[j] < 0.0)) held[static_cast<std::size_t>(j)] = true;
+      if ((u[j] <= lower[j] && at.score[j] > 0.0) || (u[j] >= upper[j] && at.score[j] < 0.0))
+        held[static_cast<std::size_t>(j)] = true;
     VectorXd p = newton_step(at.H, at.score, u, lower, upper, held);
     const double largest = p.lpNorm<Eigen::Infinity>();
     if (largest > 0.5) p *= 0.5 / largest;  // half the bounds' half width at a time
@@ -356,12 +383,14 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
   }
   const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, true);
   VectorXd residuals;
-  const VectorXd solution = u.cwiseProduct(scale).cwiseMax(lower_of(parameters)).cwiseMin(upper_of(parameters));
+  const VectorXd solution =
+      u.cwiseProduct(scale).cwiseMax(lower_of(parameters)).cwiseMin(upper_of(parameters));
   problem.evaluator()->evaluate(solution, residuals, nullptr);
   const auto blocks = problem.blocks();
   const ResidualCorrelation correlation = residual_correlation(residuals, blocks);
   const double samples = static_cast<double>(residuals.size()) / correlation.inflation;
-  MatrixXd S = long_run_scores(at.rows, blocks, 2 * correlation.first_crossing) * (samples / std::max(samples - static_cast<double>(n), 1.0));
+  MatrixXd S = long_run_scores(at.rows, blocks, 2 * correlation.first_crossing) *
+               (samples / std::max(samples - static_cast<double>(n), 1.0));
   S.diagonal() += prior_weight;
   const MatrixXd inverse = at.H.ldlt().solve(MatrixXd::Identity(n, n));
   const MatrixXd monte_carlo = inverse * at.monte_carlo * inverse.transpose();
@@ -370,7 +399,8 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
   out.bias = x - solution;
   out.covariance = scale.asDiagonal() * C * scale.asDiagonal();
   // dx / d ln c^2 = H^-1 (one dose's share of the score): what a wrong law of the noise does to x.
-  const VectorXd by_law = 2.0 * noise.coefficient_uncertainty * (inverse * at.noise_score).cwiseProduct(scale);
+  const VectorXd by_law =
+      2.0 * noise.coefficient_uncertainty * (inverse * at.noise_score).cwiseProduct(scale);
   out.covariance += by_law * by_law.transpose();
   out.bias_standard_error = monte_carlo.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseProduct(scale);
   out.explained_variance = at.explained;

@@ -39,8 +39,9 @@ struct FreeParameters {
 
 /// What a list of free quantities means for these muscles and channels; problems go to `found`.
 FreeParameters expand(const std::vector<FreeQuantity>& free, const std::vector<data::SceneMuscle>& muscles,
-                      const std::vector<bool>& driven, const std::vector<std::string>& channels, const ChainValues& start,
-                      const ModelChoice& model, std::vector<data::Diagnostic>& found);
+                      const std::vector<bool>& driven, const std::vector<std::string>& channels,
+                      const ChainValues& start, const ModelChoice& model,
+                      std::vector<data::Diagnostic>& found);
 
 bool is_activation(Quantity quantity);  ///< delay, time constants, recursion, shape
 bool is_shared_as_factor(Quantity quantity);

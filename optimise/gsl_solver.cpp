@@ -1,5 +1,7 @@
-/// GSL's multifit_nlinear (trust region, Levenberg-Marquardt with Moré scaling) on an unbounded problem made by
-///     x = mid + half sin(z)                                   (James & Roos 1975, doi:10.1016/0010-4655(75)90039-9)
+/// GSL's multifit_nlinear (trust region, Levenberg-Marquardt with Moré scaling) on an unbounded problem made
+/// by
+///     x = mid + half sin(z)                                   (James & Roos 1975,
+///     doi:10.1016/0010-4655(75)90039-9)
 /// A solution on a bound is approached with dx/dz -> 0, so it is found, but more slowly than by projection.
 
 #include <gsl/gsl_errno.h>
@@ -53,12 +55,17 @@ int jacobian(const gsl_vector* z, void* data, gsl_matrix* df) {
 
 void run_gsl(Objective& objective, const SolveOptions& options, const Report& report, StartResult& result) {
   static std::once_flag once;
-  std::call_once(once, [] { gsl_set_error_handler_off(); });  // a library must not abort; status codes are checked
+  std::call_once(once,
+                 [] { gsl_set_error_handler_off(); });  // a library must not abort; status codes are checked
 
-  Context context{&objective, 0.5 * (objective.lower() + objective.upper()),
-                  0.5 * (objective.upper() - objective.lower()), {}, {}};
+  Context context{&objective,
+                  0.5 * (objective.lower() + objective.upper()),
+                  0.5 * (objective.upper() - objective.lower()),
+                  {},
+                  {}};
   const VectorXd start = objective.scaled(result.start);
-  const std::size_t n = static_cast<std::size_t>(objective.size()), m = static_cast<std::size_t>(objective.rows());
+  const std::size_t n = static_cast<std::size_t>(objective.size()),
+                    m = static_cast<std::size_t>(objective.rows());
   VectorXd r;
   if (!objective.evaluate(start, r, nullptr)) {
     result.reason = "no value at the start: " + objective.failure();
@@ -78,7 +85,8 @@ void run_gsl(Objective& objective, const SolveOptions& options, const Report& re
   }
   gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
   parameters.trs = gsl_multifit_nlinear_trs_lm;
-  gsl_multifit_nlinear_workspace* work = gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, m, n);
+  gsl_multifit_nlinear_workspace* work =
+      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, m, n);
   gsl_multifit_nlinear_fdf fdf{residuals, jacobian, nullptr, m, n, &context, 0, 0, 0};
   int status = gsl_multifit_nlinear_init(z, &fdf, work);
   double cost = result.cost_start;
@@ -98,7 +106,8 @@ void run_gsl(Objective& objective, const SolveOptions& options, const Report& re
     cost = 0.5 * sum;
     report({0, result.iterations, objective.evaluations(), cost, gradient, step, 0.0});
     if (status != GSL_SUCCESS) break;
-    if (gsl_multifit_nlinear_test(options.step_tolerance, options.gradient_tolerance, 0.0, &info, work) == GSL_SUCCESS) {
+    if (gsl_multifit_nlinear_test(options.step_tolerance, options.gradient_tolerance, 0.0, &info, work) ==
+        GSL_SUCCESS) {
       result.converged = true;
       result.reason = info == 1 ? "step below tolerance" : "gradient below tolerance";
       break;

@@ -1,12 +1,14 @@
 /// Levenberg-Marquardt on a box.
 ///
 ///     (J'J + lambda D) p = -J'r,   D = running maximum of diag(J'J)      (Moré 1978, doi:10.1007/BFb0067700)
-///     lambda <- lambda max(1/3, 1 - (2 rho - 1)^3) after a success, lambda nu (nu = 2, 4, 8, ...) after a failure
-///                                                        (Nielsen 1999, report IMM-REP-1999-05, Technical University
-///                                                        of Denmark; rho = actual / predicted decrease)
+///     lambda <- lambda max(1/3, 1 - (2 rho - 1)^3) after a success, lambda nu (nu = 2, 4, 8, ...) after a
+///     failure
+///                                                        (Nielsen 1999, report IMM-REP-1999-05, Technical
+///                                                        University of Denmark; rho = actual / predicted
+///                                                        decrease)
 ///
-/// Bounds: parameters at a bound whose gradient points outward are held. A step that would leave the box is stopped
-/// at the bounds it meets, and the other components are solved again with these displacements given.
+/// Bounds: parameters at a bound whose gradient points outward are held. A step that would leave the box is
+/// stopped at the bounds it meets, and the other components are solved again with these displacements given.
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -22,7 +24,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Minimises 1/2 p'(A + lambda D)p + g'p over lower <= u + p <= upper, approximately: held components are final.
+/// Minimises 1/2 p'(A + lambda D)p + g'p over lower <= u + p <= upper, approximately: held components are
+/// final.
 VectorXd boxed_step(const MatrixXd& A, const VectorXd& D, double lambda, const VectorXd& g, const VectorXd& u,
                     const VectorXd& lower, const VectorXd& upper) {
   const Index n = u.size();
@@ -51,9 +54,12 @@ VectorXd boxed_step(const MatrixXd& A, const VectorXd& D, double lambda, const V
     for (Index a = 0; a < k; ++a) {
       const Index j = free[static_cast<std::size_t>(a)];
       p[j] = q[a];
-      if (!(u[j] + p[j] >= lower[j])) p[j] = lower[j] - u[j];
-      else if (!(u[j] + p[j] <= upper[j])) p[j] = upper[j] - u[j];
-      else continue;
+      if (!(u[j] + p[j] >= lower[j]))
+        p[j] = lower[j] - u[j];
+      else if (!(u[j] + p[j] <= upper[j]))
+        p[j] = upper[j] - u[j];
+      else
+        continue;
       held[static_cast<std::size_t>(j)] = true;
       stopped = true;
     }
@@ -78,7 +84,8 @@ void run_levenberg_marquardt(Objective& objective, const SolveOptions& options, 
   MatrixXd A = J.transpose() * J;
   VectorXd g = J.transpose() * r, D = VectorXd::Zero(u.size());
   const auto log = [&] {
-    report({0, result.iterations, objective.evaluations(), cost, projected_gradient_norm(u, g, lower, upper), step, lambda});
+    report({0, result.iterations, objective.evaluations(), cost, projected_gradient_norm(u, g, lower, upper),
+            step, lambda});
   };
   log();
   result.reason = "iteration limit reached";
@@ -90,7 +97,8 @@ void run_levenberg_marquardt(Objective& objective, const SolveOptions& options, 
     }
     D = D.cwiseMax(A.diagonal());
     const double floor = 1e-12 * std::max(D.maxCoeff(), 1e-300);
-    const double gradient_scale = std::sqrt(2.0 * cost) * std::sqrt(std::max(A.diagonal().maxCoeff(), 1e-300));
+    const double gradient_scale =
+        std::sqrt(2.0 * cost) * std::sqrt(std::max(A.diagonal().maxCoeff(), 1e-300));
     if (!(projected_gradient_norm(u, g, lower, upper) > options.gradient_tolerance * gradient_scale)) {
       result.converged = true;
       result.reason = "gradient below tolerance";

@@ -11,8 +11,9 @@ namespace brachium::optimise {
 
 Metrics metrics(std::span<const double> reference, std::span<const double> model) {
   if (reference.size() != model.size())
-    throw data::InputError("wrong-size", fmt::format("a reference of {} samples cannot be compared with {} modelled ones",
-                                                     reference.size(), model.size()));
+    throw data::InputError("wrong-size",
+                           fmt::format("a reference of {} samples cannot be compared with {} modelled ones",
+                                       reference.size(), model.size()));
   if (reference.empty()) throw data::InputError("empty-signal", "there is no sample to compare");
   Metrics m;
   m.count = reference.size();
@@ -51,15 +52,18 @@ Metrics metrics(std::span<const double> reference, std::span<const double> model
   return m;
 }
 
-Metrics pooled_metrics(std::span<const std::vector<double>> reference, std::span<const std::vector<double>> model) {
+Metrics pooled_metrics(std::span<const std::vector<double>> reference,
+                       std::span<const std::vector<double>> model) {
   if (reference.size() != model.size())
-    throw data::InputError("wrong-size", fmt::format("{} reference trials cannot be compared with {} modelled ones",
-                                                     reference.size(), model.size()));
+    throw data::InputError("wrong-size",
+                           fmt::format("{} reference trials cannot be compared with {} modelled ones",
+                                       reference.size(), model.size()));
   std::vector<double> all_reference, all_model;
   for (std::size_t t = 0; t < reference.size(); ++t) {
     if (reference[t].size() != model[t].size())
-      throw data::InputError("wrong-size", fmt::format("trial {}: a reference of {} samples cannot be compared with {}", t,
-                                                       reference[t].size(), model[t].size()));
+      throw data::InputError("wrong-size",
+                             fmt::format("trial {}: a reference of {} samples cannot be compared with {}", t,
+                                         reference[t].size(), model[t].size()));
     all_reference.insert(all_reference.end(), reference[t].begin(), reference[t].end());
     all_model.insert(all_model.end(), model[t].begin(), model[t].end());
   }

@@ -25,7 +25,7 @@ struct Metrics {
   double bias = 0.0;                  ///< mean of model - reference
   std::optional<double> nrmse_range;  ///< none where the reference is constant
   std::optional<double> nrmse_sd;     ///< none where the reference is constant
-  std::optional<double> r2;           ///< none where the reference is constant: an isometric hold has no variance
+  std::optional<double> r2;  ///< none where the reference is constant: an isometric hold has no variance
   std::optional<double> correlation;  ///< Pearson's; none where either is constant
 };
 
@@ -33,6 +33,7 @@ struct Metrics {
 Metrics metrics(std::span<const double> reference, std::span<const double> model);
 
 /// Metrics of several trials as one sample (not a mean of metrics): variance about the common mean.
-Metrics pooled_metrics(std::span<const std::vector<double>> reference, std::span<const std::vector<double>> model);
+Metrics pooled_metrics(std::span<const std::vector<double>> reference,
+                       std::span<const std::vector<double>> model);
 
 }  // namespace brachium::optimise

@@ -46,15 +46,24 @@ ModelChoice ModelChoice::from_map(const std::map<std::string, std::string>& map)
   std::vector<std::string> known;
   for (const auto& [key, value] : choice.to_map()) known.push_back(key);
   for (const auto& [key, value] : map) {
-    if (key == "curves") choice.curves = value;
-    else if (key == "tendon") choice.tendon = hill::parse_tendon(value);
-    else if (key == "fibre_velocity") choice.fibre_velocity = hill::parse_fibre_velocity(value);
-    else if (key == "compatibility") choice.compatibility = hill::parse_compatibility(value);
-    else if (key == "optimal_length_coupling") choice.optimal_length_coupling = number(key, value);
-    else if (key == "activation_form") choice.activation.form = emg::parse_activation_form(value);
-    else if (key == "start_up") choice.activation.start_up = emg::parse_start_up(value);
-    else if (key == "nonlinearity") choice.activation.nonlinearity = emg::parse_nonlinearity(value);
-    else if (key == "recursion_rate_hz") choice.recursion_rate_hz = number(key, value);
+    if (key == "curves")
+      choice.curves = value;
+    else if (key == "tendon")
+      choice.tendon = hill::parse_tendon(value);
+    else if (key == "fibre_velocity")
+      choice.fibre_velocity = hill::parse_fibre_velocity(value);
+    else if (key == "compatibility")
+      choice.compatibility = hill::parse_compatibility(value);
+    else if (key == "optimal_length_coupling")
+      choice.optimal_length_coupling = number(key, value);
+    else if (key == "activation_form")
+      choice.activation.form = emg::parse_activation_form(value);
+    else if (key == "start_up")
+      choice.activation.start_up = emg::parse_start_up(value);
+    else if (key == "nonlinearity")
+      choice.activation.nonlinearity = emg::parse_nonlinearity(value);
+    else if (key == "recursion_rate_hz")
+      choice.recursion_rate_hz = number(key, value);
     else
       throw data::InputError("unknown-key", fmt::format("`{}` is not an entry of a subject's model", key),
                              data::suggest(key, known));

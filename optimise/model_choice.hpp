@@ -1,6 +1,6 @@
 #pragma once
-/// Which chain a subject's parameters are valid with: the choices of emg/ and hill/ in one value, and as the texts
-/// that definitions and subject files hold.
+/// Which chain a subject's parameters are valid with: the choices of emg/ and hill/ in one value, and as the
+/// texts that definitions and subject files hold.
 
 #include <map>
 #include <string>
@@ -24,10 +24,11 @@ struct ModelChoice {
   double recursion_rate_hz = 0.0;        ///< recursive form: the rate its coefficients are valid at
 
   hill::MuscleModelOptions muscle_options() const;
-  /// As Subject::model keeps it: "curves", "tendon", "fibre_velocity", "compatibility", "optimal_length_coupling",
-  /// "activation_form", "start_up", "nonlinearity", "recursion_rate_hz".
+  /// As Subject::model keeps it: "curves", "tendon", "fibre_velocity", "compatibility",
+  /// "optimal_length_coupling", "activation_form", "start_up", "nonlinearity", "recursion_rate_hz".
   std::map<std::string, std::string> to_map() const;
-  /// Absent keys keep their defaults. Throws InputError("unknown-key") or as the parsers of emg/ and hill/ do.
+  /// Absent keys keep their defaults. Throws InputError("unknown-key") or as the parsers of emg/ and hill/
+  /// do.
   static ModelChoice from_map(const std::map<std::string, std::string>& map);
 };
 

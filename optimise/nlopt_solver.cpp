@@ -14,18 +14,28 @@ using Eigen::VectorXd;
 
 nlopt::algorithm algorithm(Solver solver) {
   switch (solver) {
-    case Solver::slsqp: return nlopt::LD_SLSQP;
-    case Solver::lbfgs: return nlopt::LD_LBFGS;
-    case Solver::mma: return nlopt::LD_MMA;
-    case Solver::bobyqa: return nlopt::LN_BOBYQA;
-    case Solver::subplex: return nlopt::LN_SBPLX;
-    case Solver::crs2: return nlopt::GN_CRS2_LM;
-    case Solver::isres: return nlopt::GN_ISRES;
-    default: return nlopt::GD_MLSL_LDS;
+    case Solver::slsqp:
+      return nlopt::LD_SLSQP;
+    case Solver::lbfgs:
+      return nlopt::LD_LBFGS;
+    case Solver::mma:
+      return nlopt::LD_MMA;
+    case Solver::bobyqa:
+      return nlopt::LN_BOBYQA;
+    case Solver::subplex:
+      return nlopt::LN_SBPLX;
+    case Solver::crs2:
+      return nlopt::GN_CRS2_LM;
+    case Solver::isres:
+      return nlopt::GN_ISRES;
+    default:
+      return nlopt::GD_MLSL_LDS;
   }
 }
 
-bool is_global(Solver solver) { return solver == Solver::crs2 || solver == Solver::isres || solver == Solver::mlsl; }
+bool is_global(Solver solver) {
+  return solver == Solver::crs2 || solver == Solver::isres || solver == Solver::mlsl;
+}
 
 struct Context {
   Objective* objective;
@@ -58,19 +68,26 @@ double cost(const std::vector<double>& u, std::vector<double>& gradient, void* d
     const double step = context.best.size() ? (point - context.best).lpNorm<Eigen::Infinity>() : 0.0;
     context.best_cost = f;
     context.best = point;
-    (*context.report)({0, ++context.result->iterations, context.objective->evaluations(), f, norm, step, 0.0});
+    (*context.report)(
+        {0, ++context.result->iterations, context.objective->evaluations(), f, norm, step, 0.0});
   }
   return f;
 }
 
 std::string describe(nlopt::result code) {
   switch (code) {
-    case nlopt::STOPVAL_REACHED: return "stop value reached";
-    case nlopt::FTOL_REACHED: return "relative decrease below tolerance";
-    case nlopt::XTOL_REACHED: return "step below tolerance";
-    case nlopt::MAXEVAL_REACHED: return "evaluation limit reached";
-    case nlopt::MAXTIME_REACHED: return "time limit reached";
-    default: return "done";
+    case nlopt::STOPVAL_REACHED:
+      return "stop value reached";
+    case nlopt::FTOL_REACHED:
+      return "relative decrease below tolerance";
+    case nlopt::XTOL_REACHED:
+      return "step below tolerance";
+    case nlopt::MAXEVAL_REACHED:
+      return "evaluation limit reached";
+    case nlopt::MAXTIME_REACHED:
+      return "time limit reached";
+    default:
+      return "done";
   }
 }
 
@@ -96,7 +113,8 @@ void run_nlopt(Objective& objective, const SolveOptions& options, std::uint64_t 
   }
   // NLopt's generator is per thread but shared by calls on it: seeded anew for every start.
   if (is_global(options.solver)) nlopt::srand(static_cast<unsigned long>(seed));
-  std::vector<double> u = as_vector(objective.scaled(result.start).cwiseMax(objective.lower()).cwiseMin(objective.upper()));
+  std::vector<double> u =
+      as_vector(objective.scaled(result.start).cwiseMax(objective.lower()).cwiseMin(objective.upper()));
   VectorXd r;
   if (!objective.evaluate(Eigen::Map<const VectorXd>(u.data(), static_cast<Eigen::Index>(n)), r, nullptr)) {
     result.reason = "no value at the start: " + objective.failure();

@@ -18,20 +18,23 @@ using Eigen::VectorXd;
 
 void check(const MatrixXd& A, const VectorXd& b, const VectorXd& lower, const VectorXd& upper) {
   if (A.rows() != b.size() || A.cols() != lower.size() || A.cols() != upper.size())
-    throw data::InputError("wrong-size", fmt::format("a {} x {} matrix does not fit {} data, {} lower and {} upper bounds",
-                                                     A.rows(), A.cols(), b.size(), lower.size(), upper.size()));
+    throw data::InputError("wrong-size",
+                           fmt::format("a {} x {} matrix does not fit {} data, {} lower and {} upper bounds",
+                                       A.rows(), A.cols(), b.size(), lower.size(), upper.size()));
   if (!A.allFinite() || !b.allFinite()) throw data::InputError("not-finite", "matrix or data are not finite");
   for (Index j = 0; j < lower.size(); ++j)
     if (!(lower[j] <= upper[j]))
-      throw data::InputError("bad-bounds", fmt::format("unknown {}: lower bound {} is above the upper bound {}", j, lower[j],
-                                                       upper[j]));
+      throw data::InputError(
+          "bad-bounds",
+          fmt::format("unknown {}: lower bound {} is above the upper bound {}", j, lower[j], upper[j]));
 }
 
 enum class State { free, at_lower, at_upper };
 
 }  // namespace
 
-LinearFit bounded_least_squares(const MatrixXd& A, const VectorXd& b, const VectorXd& lower, const VectorXd& upper) {
+LinearFit bounded_least_squares(const MatrixXd& A, const VectorXd& b, const VectorXd& lower,
+                                const VectorXd& upper) {
   check(A, b, lower, upper);
   const Index n = A.cols();
   // Every unknown starts at its finite bound nearest to zero; one without bounds starts free, at zero.
@@ -40,8 +43,10 @@ LinearFit bounded_least_squares(const MatrixXd& A, const VectorXd& b, const Vect
   for (Index j = 0; j < n; ++j) {
     const bool low = std::isfinite(lower[j]), high = std::isfinite(upper[j]);
     const bool use_low = low && (!high || std::abs(lower[j]) <= std::abs(upper[j]));
-    if (use_low) state[static_cast<std::size_t>(j)] = State::at_lower;
-    else if (high) state[static_cast<std::size_t>(j)] = State::at_upper;
+    if (use_low)
+      state[static_cast<std::size_t>(j)] = State::at_lower;
+    else if (high)
+      state[static_cast<std::size_t>(j)] = State::at_upper;
     x[j] = use_low ? lower[j] : (high ? upper[j] : 0.0);
   }
   const double tolerance = 1e-12 * std::max(1e-300, (A.transpose() * b).lpNorm<Eigen::Infinity>());
@@ -65,13 +70,19 @@ LinearFit bounded_least_squares(const MatrixXd& A, const VectorXd& b, const Vect
     if (pick >= 0) state[static_cast<std::size_t>(pick)] = State::free;
     while (true) {
       if (++fit.iterations > 30 * n + 30)
-        throw data::ConvergenceFailure({"bounded linear least squares", "the active set keeps changing", fit.iterations,
-                                        (A * x - b).norm(), 0.0, {}});
+        throw data::ConvergenceFailure({"bounded linear least squares",
+                                        "the active set keeps changing",
+                                        fit.iterations,
+                                        (A * x - b).norm(),
+                                        0.0,
+                                        {}});
       std::vector<Index> free;
       VectorXd rhs = b;
       for (Index j = 0; j < n; ++j) {
-        if (state[static_cast<std::size_t>(j)] == State::free) free.push_back(j);
-        else rhs -= A.col(j) * x[j];
+        if (state[static_cast<std::size_t>(j)] == State::free)
+          free.push_back(j);
+        else
+          rhs -= A.col(j) * x[j];
       }
       if (free.empty()) break;
       MatrixXd F(A.rows(), static_cast<Index>(free.size()));
@@ -91,7 +102,8 @@ LinearFit bounded_least_squares(const MatrixXd& A, const VectorXd& b, const Vect
           blocker = j;
         }
       }
-      for (std::size_t k = 0; k < free.size(); ++k) x[free[k]] += alpha * (z[static_cast<Index>(k)] - x[free[k]]);
+      for (std::size_t k = 0; k < free.size(); ++k)
+        x[free[k]] += alpha * (z[static_cast<Index>(k)] - x[free[k]]);
       if (blocker < 0) break;
       const bool low = std::abs(x[blocker] - lower[blocker]) <= std::abs(x[blocker] - upper[blocker]);
       x[blocker] = low ? lower[blocker] : upper[blocker];

@@ -55,8 +55,8 @@ bool Objective::evaluate(const Eigen::VectorXd& u, Eigen::VectorXd& r, Eigen::Ma
   return true;
 }
 
-double projected_gradient_norm(const Eigen::VectorXd& u, const Eigen::VectorXd& gradient, const Eigen::VectorXd& lower,
-                               const Eigen::VectorXd& upper) {
+double projected_gradient_norm(const Eigen::VectorXd& u, const Eigen::VectorXd& gradient,
+                               const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
   double norm = 0.0;
   for (Eigen::Index j = 0; j < u.size(); ++j) {
     const bool blocked = (u[j] <= lower[j] && gradient[j] > 0.0) || (u[j] >= upper[j] && gradient[j] < 0.0);

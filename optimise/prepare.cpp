@@ -11,8 +11,9 @@ namespace brachium::optimise {
 
 UsableSpan usable_span(const CalibrationTrial& trial, double edge_s) {
   if (!trial.use.empty() && trial.use.size() != trial.moment.samples.size()) {
-    throw data::InputError("wrong-size", fmt::format("trial `{}`: {} samples of the moment, {} marks of use", trial.name,
-                                                     trial.moment.samples.size(), trial.use.size()));
+    throw data::InputError("wrong-size",
+                           fmt::format("trial `{}`: {} samples of the moment, {} marks of use", trial.name,
+                                       trial.moment.samples.size(), trial.use.size()));
   }
   double from = trial.moment.info.start_time_s, to = trial.moment.info.end_time_s();
   const auto narrow = [&](const data::Signal& signal) {
@@ -25,14 +26,18 @@ UsableSpan usable_span(const CalibrationTrial& trial, double edge_s) {
   const auto& info = trial.moment.info;
   const double tolerance = 1e-6;
   const auto lowest = [&](double t) { return std::ceil((t - info.start_time_s) * info.rate_hz - tolerance); };
-  const auto highest = [&](double t) { return std::floor((t - info.start_time_s) * info.rate_hz + tolerance); };
-  const double frame0 = lowest(from), frame1 = highest(to), row0 = lowest(from + edge_s), row1 = highest(to - edge_s);
+  const auto highest = [&](double t) {
+    return std::floor((t - info.start_time_s) * info.rate_hz + tolerance);
+  };
+  const double frame0 = lowest(from), frame1 = highest(to), row0 = lowest(from + edge_s),
+               row1 = highest(to - edge_s);
   if (!(row1 - row0 >= 7.0))
-    throw data::InputError("empty-window",
-                           fmt::format("trial `{}`: excitation, angle and moment share {:.3f} s ({:.3f} to {:.3f} s), too "
-                                       "little after {:.3f} s are dropped at each end",
-                                       trial.name, std::max(to - from, 0.0), from, to, edge_s),
-                           "check the signals' start times, or drop less at the edges");
+    throw data::InputError(
+        "empty-window",
+        fmt::format("trial `{}`: excitation, angle and moment share {:.3f} s ({:.3f} to {:.3f} s), too "
+                    "little after {:.3f} s are dropped at each end",
+                    trial.name, std::max(to - from, 0.0), from, to, edge_s),
+        "check the signals' start times, or drop less at the edges");
   return {static_cast<std::size_t>(frame0), static_cast<std::size_t>(frame1), static_cast<std::size_t>(row0),
           static_cast<std::size_t>(row1)};
 }
@@ -56,15 +61,16 @@ void motion_at(const CalibrationTrial& trial, std::span<const double> times_s, s
   }
 }
 
-std::vector<std::vector<double>> channel_samples(const CalibrationTrial& trial, const std::vector<std::string>& channels) {
+std::vector<std::vector<double>> channel_samples(const CalibrationTrial& trial,
+                                                 const std::vector<std::string>& channels) {
   std::vector<std::vector<double>> out;
   std::vector<std::string> known;
   for (const data::Signal& signal : trial.excitations) known.push_back(signal.info.name);
   for (const std::string& channel : channels) {
     const auto found = std::find(known.begin(), known.end(), channel);
     if (found == known.end())
-      throw data::InputError("unmapped-channel", fmt::format("trial `{}` has no excitation of channel `{}`", trial.name,
-                                                             channel),
+      throw data::InputError("unmapped-channel",
+                             fmt::format("trial `{}` has no excitation of channel `{}`", trial.name, channel),
                              data::suggest(channel, known));
     out.push_back(trial.excitations[static_cast<std::size_t>(found - known.begin())].samples);
   }
@@ -92,11 +98,16 @@ std::shared_ptr<PreparedTrial> prepare_trial(const CalibrationTrial& trial, cons
   for (std::size_t k = 1; k < trial.excitations.size() && found.empty(); ++k) {
     const auto &a = trial.excitations[0].info, &b = trial.excitations[k].info;
     if (a.rate_hz != b.rate_hz || a.start_time_s != b.start_time_s || a.count != b.count)
-      found.push_back({data::Severity::error, "rate-mismatch",
-                       fmt::format("trial `{}`: excitations `{}` ({} Hz, {} samples from {} s) and `{}` ({} Hz, {} samples from "
-                                   "{} s) are not on one grid",
-                                   trial.name, a.name, a.rate_hz, a.count, a.start_time_s, b.name, b.rate_hz, b.count,
-                                   b.start_time_s), {}, "resample them first"});
+      found.push_back(
+          {data::Severity::error,
+           "rate-mismatch",
+           fmt::format(
+               "trial `{}`: excitations `{}` ({} Hz, {} samples from {} s) and `{}` ({} Hz, {} samples from "
+               "{} s) are not on one grid",
+               trial.name, a.name, a.rate_hz, a.count, a.start_time_s, b.name, b.rate_hz, b.count,
+               b.start_time_s),
+           {},
+           "resample them first"});
   }
   if (!found.empty()) throw data::InputError(std::move(found));
 
@@ -104,7 +115,8 @@ std::shared_ptr<PreparedTrial> prepare_trial(const CalibrationTrial& trial, cons
   const UsableSpan span = usable_span(trial, chain.options.edge_s);
   out->name = trial.name;
   out->frame_rate_hz = trial.moment.info.rate_hz;
-  for (std::size_t i = span.first_frame; i <= span.last_frame; ++i) out->frame_time_s.push_back(trial.moment.info.time_s(i));
+  for (std::size_t i = span.first_frame; i <= span.last_frame; ++i)
+    out->frame_time_s.push_back(trial.moment.info.time_s(i));
   motion_at(trial, out->frame_time_s, out->angle_rad, out->velocity_rad_s);
   const std::size_t n = out->frame_time_s.size();
   for (const limb::MusclePath& path : paths) {
@@ -138,10 +150,11 @@ std::shared_ptr<PreparedTrial> prepare_trial(const CalibrationTrial& trial, cons
     out->reference.push_back(trial.moment.samples[i]);
   }
   if (out->rows.size() < 8) {
-    throw data::InputError("empty-window",
-                           fmt::format("trial `{}`: {} frames are left to compare, {} are marked as not to be used",
-                                       trial.name, out->rows.size(), out->window.masked),
-                           "see what marked them in the stage that made the moment, or leave the trial out");
+    throw data::InputError(
+        "empty-window",
+        fmt::format("trial `{}`: {} frames are left to compare, {} are marked as not to be used", trial.name,
+                    out->rows.size(), out->window.masked),
+        "see what marked them in the stage that made the moment, or leave the trial out");
   }
   out->window.name = trial.name;
   out->window.first_time_s = trial.moment.info.time_s(span.first_row);

@@ -20,11 +20,14 @@ UsableSpan usable_span(const CalibrationTrial& trial, double edge_s);
 std::shared_ptr<PreparedTrial> prepare_trial(const CalibrationTrial& trial, const Chain& chain,
                                              const std::vector<limb::MusclePath>& paths);
 
-/// A trial's angle [rad] and velocity [rad/s] at some instants; the velocity from the angle's spline where none is given.
+/// A trial's angle [rad] and velocity [rad/s] at some instants; the velocity from the angle's spline where
+/// none is given.
 void motion_at(const CalibrationTrial& trial, std::span<const double> times_s, std::vector<double>& angle,
                std::vector<double>& velocity);
 
-/// Samples of the trial's channels in a given order; throws InputError("unmapped-channel") for one that is absent.
-std::vector<std::vector<double>> channel_samples(const CalibrationTrial& trial, const std::vector<std::string>& channels);
+/// Samples of the trial's channels in a given order; throws InputError("unmapped-channel") for one that is
+/// absent.
+std::vector<std::vector<double>> channel_samples(const CalibrationTrial& trial,
+                                                 const std::vector<std::string>& channels);
 
 }  // namespace brachium::optimise

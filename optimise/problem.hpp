@@ -10,8 +10,8 @@
 /// | J      | jacobian     | 1 / unit            | dr_i/dx_j (m x n)                                        |
 /// | s      | scale        | unit of x           | typical size of a change; solvers work in x / s          |
 ///
-/// Priors are rows of the least-squares problem like any other; they are kept apart so that statistics can tell
-/// what the data said from what was believed beforehand.
+/// Priors are rows of the least-squares problem like any other; they are kept apart so that statistics can
+/// tell what the data said from what was believed beforehand.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -45,8 +45,8 @@ struct Parameter {
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
-  /// residuals is resized to m, the Jacobian, if wanted, to m x n. Throws data::ConvergenceFailure where the model
-  /// has no value at x.
+  /// residuals is resized to m, the Jacobian, if wanted, to m x n. Throws data::ConvergenceFailure where the
+  /// model has no value at x.
   virtual void evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) = 0;
 };
 
@@ -60,8 +60,9 @@ class LeastSquaresProblem {
   virtual std::unique_ptr<Evaluator> evaluator() const = 0;
 };
 
-/// Throws InputError listing every parameter that is not finite, has lower > upper, a start outside its bounds, a
-/// scale or prior deviation that is not positive ("bad-parameter"), or stands twice ("duplicate-parameter").
+/// Throws InputError listing every parameter that is not finite, has lower > upper, a start outside its
+/// bounds, a scale or prior deviation that is not positive ("bad-parameter"), or stands twice
+/// ("duplicate-parameter").
 void check_parameters(const std::vector<Parameter>& parameters);
 
 Eigen::VectorXd start_of(const std::vector<Parameter>& parameters);

@@ -20,15 +20,16 @@ Resampling::Resampling(const data::SignalInfo& from, std::span<const double> tim
       throw std::out_of_range("an instant lies outside the signal");
     const double nearest = std::round(position);
     if (std::abs(position - nearest) < 1e-6 || n == 1) {
-      first_[i] = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(nearest), 0, n - 1));
+      first_[i] = static_cast<std::size_t>(
+          std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(nearest), 0, n - 1));
       weight_[i] = {1.0, 0.0, 0.0, 0.0};
       identity_ = identity_ && first_[i] == i;
       continue;
     }
     identity_ = false;
     const std::ptrdiff_t points = std::min<std::ptrdiff_t>(4, n);
-    const auto base = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(std::floor(position)) - (points == 4 ? 1 : 0),
-                                                 0, n - points);
+    const auto base = std::clamp<std::ptrdiff_t>(
+        static_cast<std::ptrdiff_t>(std::floor(position)) - (points == 4 ? 1 : 0), 0, n - points);
     first_[i] = static_cast<std::size_t>(base);
     const double s = position - static_cast<double>(base);
     weight_[i] = {0.0, 0.0, 0.0, 0.0};
@@ -56,14 +57,17 @@ void Resampling::apply(std::span<const double> samples, std::span<double> out) c
 
 void check_samples(const data::Signal& signal, const std::string& what) {
   if (signal.samples.empty() || signal.info.count != signal.samples.size())
-    throw data::InputError("empty-signal", fmt::format("{}: signal `{}` has no samples", what, signal.info.name));
-  if (!(signal.info.rate_hz > 0.0) || !std::isfinite(signal.info.rate_hz) || !std::isfinite(signal.info.start_time_s))
+    throw data::InputError("empty-signal",
+                           fmt::format("{}: signal `{}` has no samples", what, signal.info.name));
+  if (!(signal.info.rate_hz > 0.0) || !std::isfinite(signal.info.rate_hz) ||
+      !std::isfinite(signal.info.start_time_s))
     throw data::InputError("bad-rate", fmt::format("{}: signal `{}` has rate {} Hz", what, signal.info.name,
                                                    signal.info.rate_hz));
   for (std::size_t i = 0; i < signal.samples.size(); ++i)
     if (!std::isfinite(signal.samples[i]))
-      throw data::InputError("not-finite", fmt::format("{}: sample {} of signal `{}` is not finite ({:.3f} s)", what, i,
-                                                       signal.info.name, signal.info.time_s(i)));
+      throw data::InputError("not-finite",
+                             fmt::format("{}: sample {} of signal `{}` is not finite ({:.3f} s)", what, i,
+                                         signal.info.name, signal.info.time_s(i)));
 }
 
 }  // namespace brachium::optimise

@@ -11,8 +11,9 @@
 
 namespace brachium::optimise {
 
-/// Cubic Lagrange interpolation between the four nearest samples (fewer at the ends); exact, one sample alone, where an
-/// instant coincides with a sample to 1e-6 of the period. Linear in the samples, with weights fixed once.
+/// Cubic Lagrange interpolation between the four nearest samples (fewer at the ends); exact, one sample
+/// alone, where an instant coincides with a sample to 1e-6 of the period. Linear in the samples, with weights
+/// fixed once.
 class Resampling {
  public:
   Resampling() = default;
@@ -28,7 +29,8 @@ class Resampling {
   bool identity_ = false;
 };
 
-/// Throws InputError: "empty-signal", "not-finite" (naming the sample), "bad-rate", with `what` in the message.
+/// Throws InputError: "empty-signal", "not-finite" (naming the sample), "bad-rate", with `what` in the
+/// message.
 void check_samples(const data::Signal& signal, const std::string& what);
 
 }  // namespace brachium::optimise

@@ -16,8 +16,16 @@
 namespace brachium::optimise {
 namespace {
 
-constexpr std::array<const char*, 10> solver_name = {"levenberg_marquardt", "gsl_levenberg_marquardt", "slsqp", "lbfgs",
-                                                     "mma", "bobyqa", "subplex", "crs2", "isres", "mlsl"};
+constexpr std::array<const char*, 10> solver_name = {"levenberg_marquardt",
+                                                     "gsl_levenberg_marquardt",
+                                                     "slsqp",
+                                                     "lbfgs",
+                                                     "mma",
+                                                     "bobyqa",
+                                                     "subplex",
+                                                     "crs2",
+                                                     "isres",
+                                                     "mlsl"};
 
 void check_options(const SolveOptions& options) {
   std::vector<data::Diagnostic> found;
@@ -25,16 +33,21 @@ void check_options(const SolveOptions& options) {
     if (!good) found.push_back({data::Severity::error, "out-of-range", message, {}, {}});
   };
   need(options.starts >= 1, "`starts` must be at least 1");
-  need(options.max_iterations >= 1, fmt::format("`max_iterations` {} must be at least 1", options.max_iterations));
-  need(options.max_evaluations >= 1, fmt::format("`max_evaluations` {} must be at least 1", options.max_evaluations));
-  need(options.cost_tolerance >= 0.0, fmt::format("`cost_tolerance` {} must not be negative", options.cost_tolerance));
-  need(options.step_tolerance >= 0.0, fmt::format("`step_tolerance` {} must not be negative", options.step_tolerance));
+  need(options.max_iterations >= 1,
+       fmt::format("`max_iterations` {} must be at least 1", options.max_iterations));
+  need(options.max_evaluations >= 1,
+       fmt::format("`max_evaluations` {} must be at least 1", options.max_evaluations));
+  need(options.cost_tolerance >= 0.0,
+       fmt::format("`cost_tolerance` {} must not be negative", options.cost_tolerance));
+  need(options.step_tolerance >= 0.0,
+       fmt::format("`step_tolerance` {} must not be negative", options.step_tolerance));
   need(options.gradient_tolerance >= 0.0,
        fmt::format("`gradient_tolerance` {} must not be negative", options.gradient_tolerance));
   if (!found.empty()) throw data::InputError(std::move(found));
 }
 
-Eigen::VectorXd drawn_start(const std::vector<Parameter>& parameters, const SolveOptions& options, std::size_t index) {
+Eigen::VectorXd drawn_start(const std::vector<Parameter>& parameters, const SolveOptions& options,
+                            std::size_t index) {
   if (index == 0) return options.start.value_or(start_of(parameters));
   emg::Random random(options.seed, index);
   Eigen::VectorXd x = lower_of(parameters);
@@ -45,9 +58,13 @@ Eigen::VectorXd drawn_start(const std::vector<Parameter>& parameters, const Solv
 
 }  // namespace
 
-std::string to_string(Solver solver) { return solver_name[static_cast<std::size_t>(solver)]; }
+std::string to_string(Solver solver) {
+  return solver_name[static_cast<std::size_t>(solver)];
+}
 
-std::vector<std::string> solver_names() { return {solver_name.begin(), solver_name.end()}; }
+std::vector<std::string> solver_names() {
+  return {solver_name.begin(), solver_name.end()};
+}
 
 Solver parse_solver(const std::string& name) {
   for (std::size_t i = 0; i < solver_name.size(); ++i)
@@ -57,8 +74,8 @@ Solver parse_solver(const std::string& name) {
 }
 
 std::string log_heading() {
-  return fmt::format("{:>5} {:>5} {:>7} {:>16} {:>10} {:>10} {:>10}", "start", "iter", "evals", "cost", "gradient", "step",
-                     "damping");
+  return fmt::format("{:>5} {:>5} {:>7} {:>16} {:>10} {:>10} {:>10}", "start", "iter", "evals", "cost",
+                     "gradient", "step", "damping");
 }
 
 std::string log_row(const Iteration& row) {
@@ -68,15 +85,17 @@ std::string log_row(const Iteration& row) {
 
 std::string Summary::message() const {
   return fmt::format("{}: {}; cost {:.6e} -> {:.6e}, {} evaluations, {} Jacobians, {} start{}, {:.3f} s",
-                     converged ? "converged" : "NOT CONVERGED", reason, cost_start, cost, evaluations, jacobians,
-                     starts.size(), starts.size() == 1 ? "" : "s", seconds);
+                     converged ? "converged" : "NOT CONVERGED", reason, cost_start, cost, evaluations,
+                     jacobians, starts.size(), starts.size() == 1 ? "" : "s", seconds);
 }
 
-double cost_of(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x, const Eigen::VectorXd& residuals) {
+double cost_of(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x,
+               const Eigen::VectorXd& residuals) {
   double cost = 0.5 * residuals.squaredNorm();
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     if (!parameters[j].prior) continue;
-    const double z = (x[static_cast<Eigen::Index>(j)] - parameters[j].prior->mean) / parameters[j].prior->standard_deviation;
+    const double z = (x[static_cast<Eigen::Index>(j)] - parameters[j].prior->mean) /
+                     parameters[j].prior->standard_deviation;
     cost += 0.5 * z * z;
   }
   return cost;
@@ -85,11 +104,14 @@ double cost_of(const std::vector<Parameter>& parameters, const Eigen::VectorXd& 
 Summary solve(const LeastSquaresProblem& problem, const SolveOptions& options) {
   check_parameters(problem.parameters());
   check_options(options);
-  if (problem.parameters().empty()) throw data::InputError("nothing-free", "the problem has no free parameter");
+  if (problem.parameters().empty())
+    throw data::InputError("nothing-free", "the problem has no free parameter");
   if (options.start) {
-    const Eigen::VectorXd &x = *options.start, lower = lower_of(problem.parameters()), upper = upper_of(problem.parameters());
+    const Eigen::VectorXd &x = *options.start, lower = lower_of(problem.parameters()),
+                          upper = upper_of(problem.parameters());
     if (x.size() != lower.size() || !((x - lower).minCoeff() >= 0.0) || !((upper - x).minCoeff() >= 0.0))
-      throw data::InputError("out-of-range", "the start given to the solver is not inside the parameters' bounds");
+      throw data::InputError("out-of-range",
+                             "the start given to the solver is not inside the parameters' bounds");
   }
   const auto begin = std::chrono::steady_clock::now();
 
@@ -109,9 +131,12 @@ Summary solve(const LeastSquaresProblem& problem, const SolveOptions& options) {
       const std::lock_guard lock(mutex);
       options.progress(row);
     };
-    if (options.solver == Solver::levenberg_marquardt) run_levenberg_marquardt(objective, options, report, result);
-    else if (options.solver == Solver::gsl_levenberg_marquardt) run_gsl(objective, options, report, result);
-    else run_nlopt(objective, options, options.seed + index, report, result);
+    if (options.solver == Solver::levenberg_marquardt)
+      run_levenberg_marquardt(objective, options, report, result);
+    else if (options.solver == Solver::gsl_levenberg_marquardt)
+      run_gsl(objective, options, report, result);
+    else
+      run_nlopt(objective, options, options.seed + index, report, result);
     if (result.x.size())
       result.x = result.x.cwiseMax(lower_of(problem.parameters())).cwiseMin(upper_of(problem.parameters()));
     result.evaluations = objective.evaluations();

@@ -12,7 +12,8 @@
 namespace brachium::optimise {
 
 enum class Solver {
-  levenberg_marquardt,      ///< own: projected on the bounds (active set); uses the residuals' structure (default)
+  levenberg_marquardt,      ///< own: projected on the bounds (active set); uses the residuals' structure
+                            ///< (default)
   gsl_levenberg_marquardt,  ///< GSL multifit_nlinear; bounds by x = mid + half * sin(z) (James & Roos 1975)
   slsqp,                    ///< NLopt LD_SLSQP (Kraft 1994), gradient
   lbfgs,                    ///< NLopt LD_LBFGS, gradient
@@ -30,13 +31,14 @@ std::vector<std::string> solver_names();
 
 /// One row of a solver's log.
 struct Iteration {
-  std::size_t start = 0;      ///< which of the multi-starts
+  std::size_t start = 0;  ///< which of the multi-starts
   int iteration = 0;
-  int evaluations = 0;        ///< of the residuals, so far
-  double cost = 0.0;          ///< f(x)
-  double gradient_norm = 0.0; ///< max |projected gradient| in scaled parameters; NaN is never given: 0 if unknown
-  double step_norm = 0.0;     ///< max |dx| / scale
-  double damping = 0.0;       ///< Levenberg-Marquardt's; 0 elsewhere
+  int evaluations = 0;  ///< of the residuals, so far
+  double cost = 0.0;    ///< f(x)
+  double gradient_norm =
+      0.0;  ///< max |projected gradient| in scaled parameters; NaN is never given: 0 if unknown
+  double step_norm = 0.0;  ///< max |dx| / scale
+  double damping = 0.0;    ///< Levenberg-Marquardt's; 0 elsewhere
 };
 /// Fixed-width text of one row, and the heading above it.
 std::string log_heading();
@@ -45,14 +47,15 @@ std::string log_row(const Iteration& row);
 struct SolveOptions {
   Solver solver = Solver::levenberg_marquardt;
   int max_iterations = 200;
-  int max_evaluations = 20000;        ///< a bound on the work of derivative-free and global solvers
-  double cost_tolerance = 1e-14;      ///< stop when the relative decrease of f is below ...
-  double step_tolerance = 1e-11;      ///< ... or the step in scaled parameters is below ...
-  double gradient_tolerance = 1e-11;  ///< ... or the projected gradient relative to sqrt(2 f) max |J column| is below
+  int max_evaluations = 20000;    ///< a bound on the work of derivative-free and global solvers
+  double cost_tolerance = 1e-14;  ///< stop when the relative decrease of f is below ...
+  double step_tolerance = 1e-11;  ///< ... or the step in scaled parameters is below ...
+  double gradient_tolerance =
+      1e-11;  ///< ... or the projected gradient relative to sqrt(2 f) max |J column| is below
   std::optional<Eigen::VectorXd> start;  ///< first start; default: the parameters' own
-  std::size_t starts = 1;             ///< the first start, then points drawn between the bounds
-  std::uint64_t seed = 1;             ///< of starts and of stochastic solvers; results repeat exactly
-  std::size_t threads = 1;            ///< multi-starts in parallel (0: all cores); results do not depend on it
+  std::size_t starts = 1;                ///< the first start, then points drawn between the bounds
+  std::uint64_t seed = 1;                ///< of starts and of stochastic solvers; results repeat exactly
+  std::size_t threads = 1;  ///< multi-starts in parallel (0: all cores); results do not depend on it
   std::function<void(const Iteration&)> progress;  ///< called under a lock, from any thread
 };
 
@@ -66,13 +69,13 @@ struct StartResult {
 };
 
 struct Summary {
-  Eigen::VectorXd x;           ///< best point found
-  double cost_start = 0.0;     ///< f at the parameters' start
-  double cost = 0.0;           ///< f(x)
+  Eigen::VectorXd x;        ///< best point found
+  double cost_start = 0.0;  ///< f at the parameters' start
+  double cost = 0.0;        ///< f(x)
   bool converged = false;
   std::string reason;
   std::size_t best_start = 0;
-  int evaluations = 0;         ///< of the residuals, over all starts
+  int evaluations = 0;  ///< of the residuals, over all starts
   int jacobians = 0;
   double seconds = 0.0;
   std::vector<StartResult> starts;
@@ -82,11 +85,12 @@ struct Summary {
   std::string message() const;
 };
 
-/// Minimises f. A start at which the model fails is recorded with its reason; throws data::ConvergenceFailure if
-/// all fail. Throws InputError for bad parameters or options.
+/// Minimises f. A start at which the model fails is recorded with its reason; throws data::ConvergenceFailure
+/// if all fail. Throws InputError for bad parameters or options.
 Summary solve(const LeastSquaresProblem& problem, const SolveOptions& options);
 
 /// f, priors included.
-double cost_of(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x, const Eigen::VectorXd& residuals);
+double cost_of(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x,
+               const Eigen::VectorXd& residuals);
 
 }  // namespace brachium::optimise

@@ -40,7 +40,8 @@ WeakDirection direction(const std::vector<Parameter>& parameters, VectorXd v, do
   std::vector<Index> order;
   for (Index j = 0; j < v.size(); ++j)
     if (std::abs(v[j]) > 0.25) order.push_back(j);
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(v[a]) > std::abs(v[b]) + 1e-9; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return std::abs(v[a]) > std::abs(v[b]) + 1e-9; });
   for (Index j : order) {
     const std::string label = parameters[static_cast<std::size_t>(j)].label();
     weak.parameters.push_back(label);
@@ -102,12 +103,14 @@ void describe_covariance(const std::vector<Parameter>& parameters, const MatrixX
   out.correlated.clear();
   const double infinity = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < n; ++k) {
-    const double relative = largest > 0.0 ? std::sqrt(std::max(data_eigen.eigenvalues()[k], 0.0) / largest) : 0.0;
+    const double relative =
+        largest > 0.0 ? std::sqrt(std::max(data_eigen.eigenvalues()[k], 0.0) / largest) : 0.0;
     if (relative > options.singular_tolerance) continue;
     const VectorXd v = data_eigen.eigenvectors().col(k);
     out.weak.push_back(direction(parameters, v, relative));
     for (Index j = 0; j < n; ++j)
-      if (std::abs(v[j]) > 0.05 && !parameters[static_cast<std::size_t>(j)].prior) out.standard_error[j] = infinity;
+      if (std::abs(v[j]) > 0.05 && !parameters[static_cast<std::size_t>(j)].prior)
+        out.standard_error[j] = infinity;
   }
   // Directions the data do see, but not well enough to leave the middle of the bounds.
   const MatrixXd Cs = scale.cwiseInverse().asDiagonal() * out.covariance * scale.cwiseInverse().asDiagonal();
@@ -134,13 +137,14 @@ void describe_covariance(const std::vector<Parameter>& parameters, const MatrixX
   }
 }
 
-FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const VectorXd& x, const VectorXd& residuals,
-                             const MatrixXd& jacobian, const std::vector<ResidualBlock>& blocks,
-                             const StatisticsOptions& options) {
+FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const VectorXd& x,
+                             const VectorXd& residuals, const MatrixXd& jacobian,
+                             const std::vector<ResidualBlock>& blocks, const StatisticsOptions& options) {
   const Index m = residuals.size(), n = x.size();
   if (jacobian.rows() != m || jacobian.cols() != n || static_cast<Index>(parameters.size()) != n)
-    throw data::InputError("wrong-size", fmt::format("{} residuals and {} parameters do not fit a {} x {} Jacobian", m, n,
-                                                     jacobian.rows(), jacobian.cols()));
+    throw data::InputError("wrong-size",
+                           fmt::format("{} residuals and {} parameters do not fit a {} x {} Jacobian", m, n,
+                                       jacobian.rows(), jacobian.cols()));
   FitStatistics out;
   const ResidualCorrelation correlation = residual_correlation(residuals, blocks);
   out.inflation = correlation.inflation;

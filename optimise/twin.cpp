@@ -9,8 +9,6 @@
 #include "data/limb/bodies.hpp"
 #include "data/limb/drive.hpp"
 #include "data/limb/muscle_path.hpp"
-#include "data/limb/drive.hpp"
-#include "data/limb/muscle_path.hpp"
 #include "data/model/error.hpp"
 #include "emg/random.hpp"
 #include "optimise/excitation_error.hpp"
@@ -54,20 +52,26 @@ void check(const TwinOptions& options, const data::Coordinate& coordinate) {
        fmt::format("`moment_noise_cutoff_hz` {} must be positive", options.moment_noise_cutoff_hz));
   std::set<std::string> names;
   for (const TwinTrial& t : options.trials) {
-    need(t.duration_s >= 1.0 && std::isfinite(t.duration_s), fmt::format("trial `{}`: duration {} s must be at least 1 s", t.name,
-                                                                        t.duration_s));
-    need(t.effort >= 0.0 && t.effort <= 1.0, fmt::format("trial `{}`: effort {} must be in [0, 1]", t.name, t.effort));
-    need(t.cycle_s >= 0.5, fmt::format("trial `{}`: cycle of {} s must be at least 0.5 s", t.name, t.cycle_s));
-    need(t.lower_rad <= t.upper_rad && t.lower_rad >= coordinate.lower_rad && t.upper_rad <= coordinate.upper_rad,
-         fmt::format("trial `{}`: angles {:.1f} to {:.1f} deg are not inside the scene's {:.1f} to {:.1f} deg", t.name,
-                     t.lower_rad / kDeg, t.upper_rad / kDeg, coordinate.lower_rad / kDeg, coordinate.upper_rad / kDeg));
+    need(t.duration_s >= 1.0 && std::isfinite(t.duration_s),
+         fmt::format("trial `{}`: duration {} s must be at least 1 s", t.name, t.duration_s));
+    need(t.effort >= 0.0 && t.effort <= 1.0,
+         fmt::format("trial `{}`: effort {} must be in [0, 1]", t.name, t.effort));
+    need(t.cycle_s >= 0.5,
+         fmt::format("trial `{}`: cycle of {} s must be at least 0.5 s", t.name, t.cycle_s));
+    need(
+        t.lower_rad <= t.upper_rad && t.lower_rad >= coordinate.lower_rad &&
+            t.upper_rad <= coordinate.upper_rad,
+        fmt::format("trial `{}`: angles {:.1f} to {:.1f} deg are not inside the scene's {:.1f} to {:.1f} deg",
+                    t.name, t.lower_rad / kDeg, t.upper_rad / kDeg, coordinate.lower_rad / kDeg,
+                    coordinate.upper_rad / kDeg));
     need(names.insert(t.name).second, fmt::format("trial `{}` stands twice", t.name));
   }
   if (!found.empty()) throw data::InputError(std::move(found));
 }
 
 /// +1 for a channel that mostly drives flexors, -1 for extensors, by moment arm times force in mid range.
-std::vector<double> channel_sides(const data::Scene& scene, const limb::DriveMap& drive, const data::Coordinate& coordinate) {
+std::vector<double> channel_sides(const data::Scene& scene, const limb::DriveMap& drive,
+                                  const data::Coordinate& coordinate) {
   std::vector<double> sides(drive.channels.size(), 0.0);
   const double mid = 0.5 * (coordinate.lower_rad + coordinate.upper_rad);
   for (std::size_t row = 0; row < drive.muscles.size(); ++row) {
@@ -83,11 +87,14 @@ std::vector<double> channel_sides(const data::Scene& scene, const limb::DriveMap
 }
 
 /// True excitation of a channel: its side's effort, partly followed, and some of the other side's.
-std::vector<double> channel_excitation(const ProgrammeTraces& traces, const TwinTrial& trial, const TwinOptions& options,
-                                       double side, std::size_t trial_index, std::size_t channel) {
-  const auto &own = side > 0.0 ? traces.flexion : traces.extension, &other = side > 0.0 ? traces.extension : traces.flexion;
+std::vector<double> channel_excitation(const ProgrammeTraces& traces, const TwinTrial& trial,
+                                       const TwinOptions& options, double side, std::size_t trial_index,
+                                       std::size_t channel) {
+  const auto &own = side > 0.0 ? traces.flexion : traces.extension,
+             &other = side > 0.0 ? traces.extension : traces.flexion;
   const std::uint64_t stream = ((static_cast<std::uint64_t>(trial_index) + 1) << 16) + 100 + channel;
-  std::vector<double> out = smooth_course(own.size(), options.excitation_rate_hz, 0.1, 1.5, options.seed, stream);
+  std::vector<double> out =
+      smooth_course(own.size(), options.excitation_rate_hz, 0.1, 1.5, options.seed, stream);
   const bool maximal = trial.programme == Programme::mvc;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double follow = maximal ? own[i] : own[i] * (1.0 - options.independence * out[i]);
@@ -96,7 +103,8 @@ std::vector<double> channel_excitation(const ProgrammeTraces& traces, const Twin
   return out;
 }
 
-/// What a dynamometer whose arm follows the limb reads: flexion positive, gravity and inertia of limb and load included.
+/// What a dynamometer whose arm follows the limb reads: flexion positive, gravity and inertia of limb and
+/// load included.
 void add_dynamometer(const data::Scene& scene, const std::string& coordinate, const ProgrammeTraces& traces,
                      const std::vector<double>& moment, const TwinOptions& options, data::Trial& trial) {
   const limb::BodySet bodies = limb::bodies_of(scene, coordinate, trial.conditions, trial.name);
@@ -105,8 +113,10 @@ void add_dynamometer(const data::Scene& scene, const std::string& coordinate, co
   std::vector<double> torque(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t a = i == 0 ? 0 : i - 1, b = i + 1 == n ? i : i + 1;
-    const double acceleration = (traces.velocity_rad_s[b] - traces.velocity_rad_s[a]) * rate / static_cast<double>(b - a);
-    const double gravity = -S * limb::standard_gravity_m_per_s2 * std::sin(traces.angle_rad[i] + scene.upper_arm_inclination_rad);
+    const double acceleration =
+        (traces.velocity_rad_s[b] - traces.velocity_rad_s[a]) * rate / static_cast<double>(b - a);
+    const double gravity = -S * limb::standard_gravity_m_per_s2 *
+                           std::sin(traces.angle_rad[i] + scene.upper_arm_inclination_rad);
     torque[i] = moment[i] + gravity - I * acceleration;
   }
   const auto add = [&](const char* name, Recorded quantity, const char* unit, std::vector<double> samples) {
@@ -127,8 +137,8 @@ data::TrialKind kind_of(const TwinTrial& trial) {
 }  // namespace
 
 std::vector<TwinTrial> twin_protocol() {
-  const auto trial = [](std::string name, Programme programme, double duration, double lower_deg, double upper_deg, double effort,
-                        double cycle) {
+  const auto trial = [](std::string name, Programme programme, double duration, double lower_deg,
+                        double upper_deg, double effort, double cycle) {
     TwinTrial t;
     t.name = std::move(name);
     t.programme = programme;
@@ -153,7 +163,8 @@ std::vector<TwinTrial> twin_protocol() {
 Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
   TwinOptions options = given;
   if (options.trials.empty()) options.trials = twin_protocol();
-  if (scene.coordinates.empty()) throw data::InputError("missing-coordinate", "the twin's scene has no coordinate");
+  if (scene.coordinates.empty())
+    throw data::InputError("missing-coordinate", "the twin's scene has no coordinate");
   const data::Coordinate& coordinate = scene.coordinates.front();
   check(options, coordinate);
   const limb::DriveMap drive = limb::drive_map(scene);
@@ -161,7 +172,8 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
 
   Twin twin;
   twin.recordings.subject = "synthetic twin";
-  twin.recordings.attributes["source"] = fmt::format("synthetic twin of scene `{}`, seed {}", scene.title, options.seed);
+  twin.recordings.attributes["source"] =
+      fmt::format("synthetic twin of scene `{}`, seed {}", scene.title, options.seed);
   twin.truth = twin.recordings;
   for (std::size_t t = 0; t < options.trials.size(); ++t) {
     const TwinTrial& plan = options.trials[t];
@@ -178,10 +190,13 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
       const auto gain = options.channel_gains.find(drive.channels[k]);
       if (gain != options.channel_gains.end())
         for (double& value : e) value /= gain->second;
-      chain.excitations.push_back(signal(drive.channels[k], Recorded::excitation, "1", options.excitation_rate_hz, std::move(e)));
+      chain.excitations.push_back(
+          signal(drive.channels[k], Recorded::excitation, "1", options.excitation_rate_hz, std::move(e)));
     }
-    chain.angle = signal("joint_angle", Recorded::joint_angle, "rad", options.motion_rate_hz, traces.angle_rad);
-    chain.velocity = signal("joint_velocity", Recorded::joint_velocity, "rad/s", options.motion_rate_hz, traces.velocity_rad_s);
+    chain.angle =
+        signal("joint_angle", Recorded::joint_angle, "rad", options.motion_rate_hz, traces.angle_rad);
+    chain.velocity = signal("joint_velocity", Recorded::joint_velocity, "rad/s", options.motion_rate_hz,
+                            traces.velocity_rad_s);
     chain.moment = signal("joint_moment", Recorded::joint_moment, "N m", options.motion_rate_hz,
                           std::vector<double>(traces.angle_rad.size(), 0.0));
     chain.angle.info.coordinate = chain.velocity->info.coordinate = chain.moment.info.coordinate = q;
@@ -193,15 +208,17 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
     const CalibrationProblem problem(scene, {chain}, problem_options);
     if (t == 0) twin.subject = problem.subject(Eigen::VectorXd());
     if (problem.frame_times_s(0).size() != traces.angle_rad.size())
-      throw data::InputError("rate-mismatch", fmt::format("trial `{}`: {} s do not hold whole periods of the excitation ({} Hz) and "
-                                                          "the motion ({} Hz)",
-                                                          plan.name, plan.duration_s, options.excitation_rate_hz,
-                                                          options.motion_rate_hz));
+      throw data::InputError(
+          "rate-mismatch",
+          fmt::format("trial `{}`: {} s do not hold whole periods of the excitation ({} Hz) and "
+                      "the motion ({} Hz)",
+                      plan.name, plan.duration_s, options.excitation_rate_hz, options.motion_rate_hz));
     std::vector<double> moment(traces.angle_rad.size(), 0.0);
     for (const auto& excitation : chain.excitations) truth.signals.push_back(excitation);
     for (const MuscleTraces& m : problem.muscle_traces(0, Eigen::VectorXd())) {
       for (std::size_t i = 0; i < moment.size(); ++i) moment[i] += m.moment_N_m[i];
-      const auto add = [&](const char* suffix, Recorded quantity, const char* unit, const std::vector<double>& samples) {
+      const auto add = [&](const char* suffix, Recorded quantity, const char* unit,
+                           const std::vector<double>& samples) {
         truth.signals.push_back(signal(m.muscle + suffix, quantity, unit, options.motion_rate_hz, samples));
         truth.signals.back().info.muscle = m.muscle;
       };
@@ -219,20 +236,22 @@ Twin make_twin(const data::Scene& scene, const TwinOptions& given) {
         electrode.stream = ((static_cast<std::uint64_t>(t) + 1) << 16) + 1000 + k;
         electrode.amplitude_V *= std::exp2(2.0 * emg::Random(options.seed, 500 + k).uniform() - 1.0);
         auto emg = emg::synthesise_emg(chain.excitations[k].samples, options.excitation_rate_hz, electrode);
-        recorded.signals.push_back(signal(drive.channels[k], Recorded::emg, "V", electrode.rate_hz, std::move(emg.raw)));
+        recorded.signals.push_back(
+            signal(drive.channels[k], Recorded::emg, "V", electrode.rate_hz, std::move(emg.raw)));
       }
     }
     recorded.signals.push_back(chain.angle);
     recorded.signals.push_back(*chain.velocity);
     if (options.dynamometer) add_dynamometer(scene, q, traces, moment, options, recorded);
     if (options.moment_noise_sd_N_m > 0.0) {
-      const auto noise = envelope_noise(moment.size(), options.motion_rate_hz, options.moment_noise_cutoff_hz, options.seed,
-                                        ((static_cast<std::uint64_t>(t) + 1) << 16) + 2000);
+      const auto noise = envelope_noise(moment.size(), options.motion_rate_hz, options.moment_noise_cutoff_hz,
+                                        options.seed, ((static_cast<std::uint64_t>(t) + 1) << 16) + 2000);
       for (std::size_t i = 0; i < moment.size(); ++i) moment[i] += options.moment_noise_sd_N_m * noise[i];
       if (options.dynamometer)
         for (data::Signal& s : recorded.signals)
           if (s.info.quantity == Recorded::dynamometer_torque)
-            for (std::size_t i = 0; i < moment.size(); ++i) s.samples[i] += options.moment_noise_sd_N_m * noise[i];
+            for (std::size_t i = 0; i < moment.size(); ++i)
+              s.samples[i] += options.moment_noise_sd_N_m * noise[i];
     }
     recorded.signals.push_back(chain.moment);
     recorded.signals.back().samples = std::move(moment);

@@ -16,8 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::array<const char*, 7> programme_name = {"mvc", "isometric_ramp", "isometric_hold", "curl", "isokinetic",
-                                                       "passive_sweep", "random"};
+constexpr std::array<const char*, 7> programme_name = {
+    "mvc", "isometric_ramp", "isometric_hold", "curl", "isokinetic", "passive_sweep", "random"};
 
 /// Value and rate of an angle course.
 struct Motion {
@@ -31,7 +31,9 @@ double rise(double t, double t0, double ramp) {
   return s * s * s * (10.0 + s * (6.0 * s - 15.0));
 }
 
-double burst(double t, double from, double to, double ramp) { return rise(t, from, ramp) - rise(t, to - ramp, ramp); }
+double burst(double t, double from, double to, double ramp) {
+  return rise(t, from, ramp) - rise(t, to - ramp, ramp);
+}
 
 /// Sum of six sines, mean 0, |value| <= 1, with its rate.
 struct Sines {
@@ -41,7 +43,8 @@ struct Sines {
     emg::Random random(seed, stream);
     double total = 0.0;
     for (std::size_t k = 0; k < frequency_hz.size(); ++k) {
-      frequency_hz[k] = lowest_hz + (highest_hz - lowest_hz) * (static_cast<double>(k) + random.uniform()) / 6.0;
+      frequency_hz[k] =
+          lowest_hz + (highest_hz - lowest_hz) * (static_cast<double>(k) + random.uniform()) / 6.0;
       phase[k] = 2.0 * pi * random.uniform();
       amplitude[k] = 0.5 + random.uniform();
       total += amplitude[k];
@@ -68,7 +71,9 @@ Motion isokinetic(double t, const TwinTrial& trial) {
   const double s = phase < half ? phase : phase - half;
   const double top = (trial.upper_rad - trial.lower_rad) / (half - turn);
   // Velocity: 0 -> top over `turn`, constant, top -> 0 over `turn`; distance covered up to s.
-  const auto ramp_distance = [&](double x) { return top * (0.5 * x - turn / (2.0 * pi) * std::sin(pi * x / turn)); };
+  const auto ramp_distance = [&](double x) {
+    return top * (0.5 * x - turn / (2.0 * pi) * std::sin(pi * x / turn));
+  };
   double velocity = top, distance = 0.0;
   if (s < turn) {
     velocity = 0.5 * top * (1.0 - std::cos(pi * s / turn));
@@ -79,18 +84,22 @@ Motion isokinetic(double t, const TwinTrial& trial) {
     velocity = 0.5 * top * (1.0 - std::cos(pi * (half - s) / turn));
     distance = trial.upper_rad - trial.lower_rad - ramp_distance(half - s);
   }
-  return sign > 0.0 ? Motion{trial.lower_rad + distance, velocity} : Motion{trial.upper_rad - distance, -velocity};
+  return sign > 0.0 ? Motion{trial.lower_rad + distance, velocity}
+                    : Motion{trial.upper_rad - distance, -velocity};
 }
 
 }  // namespace
 
-std::string to_string(Programme programme) { return programme_name[static_cast<std::size_t>(programme)]; }
+std::string to_string(Programme programme) {
+  return programme_name[static_cast<std::size_t>(programme)];
+}
 
 Programme parse_programme(const std::string& name) {
   for (std::size_t i = 0; i < programme_name.size(); ++i)
     if (name == programme_name[i]) return static_cast<Programme>(i);
-  throw data::InputError("unknown-programme", fmt::format("`{}` is not a programme of the twin", name),
-                         data::suggest(name, std::vector<std::string>(programme_name.begin(), programme_name.end())));
+  throw data::InputError(
+      "unknown-programme", fmt::format("`{}` is not a programme of the twin", name),
+      data::suggest(name, std::vector<std::string>(programme_name.begin(), programme_name.end())));
 }
 
 std::vector<double> smooth_course(std::size_t count, double rate_hz, double lowest_hz, double highest_hz,
@@ -111,13 +120,19 @@ ProgrammeTraces run_programme(const TwinTrial& trial, const TwinOptions& options
   std::function<Motion(double)> motion = [&](double) { return Motion{trial.lower_rad, 0.0}; };
   std::function<double(double)> flexion = [](double) { return 0.0; }, extension = flexion;
   const auto sweep = [&](double t) {
-    return Motion{mid - half * std::cos(2.0 * pi * t / cycle), half * 2.0 * pi / cycle * std::sin(2.0 * pi * t / cycle)};
+    return Motion{mid - half * std::cos(2.0 * pi * t / cycle),
+                  half * 2.0 * pi / cycle * std::sin(2.0 * pi * t / cycle)};
   };
   switch (trial.programme) {
-    case Programme::mvc: {  // six equal slots: three of flexors, three of extensors; contraction in 60 % of each
+    case Programme::mvc: {  // six equal slots: three of flexors, three of extensors; contraction in 60 % of
+                            // each
       const double slot = T / 6.0;
-      flexion = [=](double t) { return t < 0.5 * T ? burst(std::fmod(t, slot), 0.2 * slot, 0.8 * slot, 0.1 * slot) : 0.0; };
-      extension = [=](double t) { return t >= 0.5 * T ? burst(std::fmod(t, slot), 0.2 * slot, 0.8 * slot, 0.1 * slot) : 0.0; };
+      flexion = [=](double t) {
+        return t < 0.5 * T ? burst(std::fmod(t, slot), 0.2 * slot, 0.8 * slot, 0.1 * slot) : 0.0;
+      };
+      extension = [=](double t) {
+        return t >= 0.5 * T ? burst(std::fmod(t, slot), 0.2 * slot, 0.8 * slot, 0.1 * slot) : 0.0;
+      };
       break;
     }
     case Programme::isometric_ramp:
@@ -126,10 +141,16 @@ ProgrammeTraces run_programme(const TwinTrial& trial, const TwinOptions& options
       break;
     case Programme::isometric_hold: {
       const double slot = T / 6.0;
-      const auto level = [&trial, slot](double t) { return trial.effort * std::min(3.0, 1.0 + std::floor(t / slot)) / 3.0; };
-      flexion = [=](double t) { return t < 0.5 * T ? level(t) * burst(std::fmod(t, slot), 0.1 * slot, 0.9 * slot, 0.15 * slot) : 0.0; };
+      const auto level = [&trial, slot](double t) {
+        return trial.effort * std::min(3.0, 1.0 + std::floor(t / slot)) / 3.0;
+      };
+      flexion = [=](double t) {
+        return t < 0.5 * T ? level(t) * burst(std::fmod(t, slot), 0.1 * slot, 0.9 * slot, 0.15 * slot) : 0.0;
+      };
       extension = [=](double t) {
-        return t >= 0.5 * T ? level(t - 0.5 * T) * burst(std::fmod(t, slot), 0.1 * slot, 0.9 * slot, 0.15 * slot) : 0.0;
+        return t >= 0.5 * T
+                   ? level(t - 0.5 * T) * burst(std::fmod(t, slot), 0.1 * slot, 0.9 * slot, 0.15 * slot)
+                   : 0.0;
       };
       break;
     }
@@ -139,12 +160,18 @@ ProgrammeTraces run_programme(const TwinTrial& trial, const TwinOptions& options
         const Motion m = sweep(t);
         return trial.effort * (0.25 + 0.6 * std::sin(m.angle) * (1.0 + 0.2 * std::tanh(m.rate))) / 0.97;
       };
-      extension = [&, sweep](double t) { return 0.15 * trial.effort * (1.0 - std::sin(sweep(t).angle) * 0.8); };
+      extension = [&, sweep](double t) {
+        return 0.15 * trial.effort * (1.0 - std::sin(sweep(t).angle) * 0.8);
+      };
       break;
     case Programme::isokinetic:
       motion = [&trial](double t) { return isokinetic(t, trial); };
-      flexion = [&, cycle](double t) { return trial.effort * burst(std::fmod(t, cycle), 0.0, 0.5 * cycle, 0.08 * cycle); };
-      extension = [&, cycle](double t) { return trial.effort * burst(std::fmod(t, cycle), 0.5 * cycle, cycle, 0.08 * cycle); };
+      flexion = [&, cycle](double t) {
+        return trial.effort * burst(std::fmod(t, cycle), 0.0, 0.5 * cycle, 0.08 * cycle);
+      };
+      extension = [&, cycle](double t) {
+        return trial.effort * burst(std::fmod(t, cycle), 0.5 * cycle, cycle, 0.08 * cycle);
+      };
       break;
     case Programme::passive_sweep:
       motion = sweep;

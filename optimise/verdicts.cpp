@@ -9,18 +9,24 @@
 namespace brachium::optimise {
 namespace {
 
-void append(std::string& remark, const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; }
+void append(std::string& remark, const std::string& text) {
+  remark += (remark.empty() ? "" : "; ") + text;
+}
 
-std::string bounds_text(double value) { return fmt::format("{:.4g}", value); }
+std::string bounds_text(double value) {
+  return fmt::format("{:.4g}", value);
+}
 
 }  // namespace
 
-std::vector<std::pair<std::size_t, std::size_t>> exchangeable_pairs(const std::vector<Parameter>& parameters) {
+std::vector<std::pair<std::size_t, std::size_t>> exchangeable_pairs(
+    const std::vector<Parameter>& parameters) {
   std::vector<std::pair<std::size_t, std::size_t>> out;
   for (std::size_t a = 0; a < parameters.size(); ++a) {
     for (std::size_t b = 0; b < parameters.size(); ++b) {
       if (parameters[a].owner != parameters[b].owner) continue;
-      const bool constants = parameters[a].name == "time_constant_1_s" && parameters[b].name == "time_constant_2_s";
+      const bool constants =
+          parameters[a].name == "time_constant_1_s" && parameters[b].name == "time_constant_2_s";
       const bool coefficients = parameters[a].name == "recursion_1" && parameters[b].name == "recursion_2";
       if (constants || coefficients) out.emplace_back(a, b);
     }
@@ -62,36 +68,46 @@ std::vector<data::ParameterVerdict> verdicts(const VerdictInput& input) {
       v.verdict = "AT UPPER BOUND";
     } else if (!(2.0 * half < width)) {
       v.verdict = "NOT IDENTIFIED";
-      append(v.remark, fmt::format("its 95 % interval ({} wide) is wider than its bounds", bounds_text(2.0 * half)));
+      append(v.remark,
+             fmt::format("its 95 % interval ({} wide) is wider than its bounds", bounds_text(2.0 * half)));
     } else if (p.prior && statistics.prior_ratio[i] > 0.9) {
       v.verdict = "NOT IDENTIFIED";
     } else {
       v.verdict = "identified";
     }
     if (p.prior && finite && statistics.prior_ratio[i] > 0.5)
-      append(v.remark, fmt::format("determined by its prior (posterior / prior sd {:.2f})", statistics.prior_ratio[i]));
+      append(v.remark,
+             fmt::format("determined by its prior (posterior / prior sd {:.2f})", statistics.prior_ratio[i]));
     out.push_back(std::move(v));
   }
   for (const CorrelatedPair& pair : statistics.correlated) {
-    append(out[pair.first].remark, fmt::format("correlated {:+.3f} with {}", pair.correlation, parameters[pair.second].label()));
-    append(out[pair.second].remark, fmt::format("correlated {:+.3f} with {}", pair.correlation, parameters[pair.first].label()));
+    append(out[pair.first].remark,
+           fmt::format("correlated {:+.3f} with {}", pair.correlation, parameters[pair.second].label()));
+    append(out[pair.second].remark,
+           fmt::format("correlated {:+.3f} with {}", pair.correlation, parameters[pair.first].label()));
   }
   for (const WeakDirection& weak : statistics.weak) {
     if (weak.parameters.size() < 2) continue;
     for (std::size_t j = 0; j < parameters.size(); ++j)
-      if (std::find(weak.parameters.begin(), weak.parameters.end(), parameters[j].label()) != weak.parameters.end())
+      if (std::find(weak.parameters.begin(), weak.parameters.end(), parameters[j].label()) !=
+          weak.parameters.end())
         append(out[j].remark, "hardly determined along: " + weak.text);
   }
   for (const auto& [gain, strength] : input.gain_strength) {
     for (const auto& [one, other] : {std::pair{gain, strength}, std::pair{strength, gain}}) {
       out[one].verdict = "NOT IDENTIFIED";
-      append(out[one].remark, fmt::format("one parameter with {}: without a maximal contraction or a prior only their product is known",
-                                          parameters[other].label()));
+      append(
+          out[one].remark,
+          fmt::format(
+              "one parameter with {}: without a maximal contraction or a prior only their product is known",
+              parameters[other].label()));
     }
   }
   for (const auto& [a, b] : exchangeable_pairs(parameters)) {
-    append(out[a].remark, fmt::format("interchangeable with {}: the pair is determined, not which is which", parameters[b].name));
-    append(out[b].remark, fmt::format("interchangeable with {}: the pair is determined, not which is which", parameters[a].name));
+    append(out[a].remark, fmt::format("interchangeable with {}: the pair is determined, not which is which",
+                                      parameters[b].name));
+    append(out[b].remark, fmt::format("interchangeable with {}: the pair is determined, not which is which",
+                                      parameters[a].name));
   }
   return out;
 }
@@ -119,7 +135,8 @@ data::Table verdict_table(const data::Subject& subject) {
   table.columns.push_back({"owner", "", owner});
   table.columns.push_back({"parameter", "", parameter});
   table.columns.push_back({"unit", "", unit});
-  for (const char* name : {"start", "fitted", "lower", "upper", "standard_error", "interval_lower", "interval_upper", "bias"})
+  for (const char* name :
+       {"start", "fitted", "lower", "upper", "standard_error", "interval_lower", "interval_upper", "bias"})
     table.columns.push_back({name, "mixed", number[name]});
   table.columns.push_back({"verdict", "", verdict});
   table.columns.push_back({"remark", "", remark});
@@ -132,15 +149,17 @@ std::string verdict_text(const data::Subject& subject) {
     owner = std::max(owner, v.muscle.size());
     parameter = std::max(parameter, v.parameter.size());
   }
-  std::string out = fmt::format("{:<{}}  {:<{}}  {:>9}  {:>9}  {:<19}  {:<21}  {:>9}  verdict\n", "owner", owner, "parameter",
-                                parameter, "start", "fitted", "bounds", "95 % interval", "bias");
+  std::string out =
+      fmt::format("{:<{}}  {:<{}}  {:>9}  {:>9}  {:<19}  {:<21}  {:>9}  verdict\n", "owner", owner,
+                  "parameter", parameter, "start", "fitted", "bounds", "95 % interval", "bias");
   for (const auto& v : subject.verdicts) {
     const std::string interval = std::isfinite(v.standard_error)
                                      ? fmt::format("{:.4g} .. {:.4g}", v.interval_lower, v.interval_upper)
                                      : std::string("unknown");
-    out += fmt::format("{:<{}}  {:<{}}  {:>9.4g}  {:>9.4g}  {:<19}  {:<21}  {:>9.2g}  {}{}\n", v.muscle, owner, v.parameter,
-                       parameter, v.start, v.fitted, fmt::format("{:.4g} .. {:.4g}", v.lower, v.upper), interval, v.bias,
-                       v.verdict, v.remark.empty() ? "" : " (" + v.remark + ")");
+    out += fmt::format("{:<{}}  {:<{}}  {:>9.4g}  {:>9.4g}  {:<19}  {:<21}  {:>9.2g}  {}{}\n", v.muscle,
+                       owner, v.parameter, parameter, v.start, v.fitted,
+                       fmt::format("{:.4g} .. {:.4g}", v.lower, v.upper), interval, v.bias, v.verdict,
+                       v.remark.empty() ? "" : " (" + v.remark + ")");
   }
   return out;
 }

@@ -1,9 +1,12 @@
 /// Time to the optimum of two calibrations on noise-free twins, rigid and elastic tendon:
-///   elbow12  7 muscles, 12 parameters (C1, C2, A, seven slack lengths, two strength groups), 2 trials x 10 s at 200 Hz,
+///   elbow12  7 muscles, 12 parameters (C1, C2, A, seven slack lengths, two strength groups), 2 trials x 10 s
+///   at 200 Hz,
 ///            the curves and the recursion of CEINMS, one thread; asked for: 0.5 s rigid, 5 s elastic
-///   elbow20  7 muscles, 20 parameters, 6 trials x 30 s at 200 Hz, two threads; asked for: 5 s rigid, 30 s elastic
-/// elbow12 uses three starts: the first ends in a local optimum in which two heads of the triceps have swapped their errors.
-/// Time counts everything from trials in memory to a subject with verdicts. Run: optimise_calibration_bench SCENE_FILE
+///   elbow20  7 muscles, 20 parameters, 6 trials x 30 s at 200 Hz, two threads; asked for: 5 s rigid, 30 s
+///   elastic
+/// elbow12 uses three starts: the first ends in a local optimum in which two heads of the triceps have
+/// swapped their errors. Time counts everything from trials in memory to a subject with verdicts. Run:
+/// optimise_calibration_bench SCENE_FILE
 
 #include <fmt/format.h>
 
@@ -44,7 +47,8 @@ TwinOptions random_trials(int count, double duration_s) {
   return options;
 }
 
-/// Every muscle with a channel of its own, flexors and extensors as groups, the recursion's coefficients -0.4 and -0.6.
+/// Every muscle with a channel of its own, flexors and extensors as groups, the recursion's coefficients -0.4
+/// and -0.6.
 data::Scene twelve(data::Scene scene) {
   for (data::SceneMuscle& m : scene.muscles) {
     m.group = m.name.starts_with("TRI") ? "extensors" : "flexors";
@@ -82,8 +86,8 @@ double worst_error(const CalibrationResult& result, const CalibrationProblem& tr
   return ((result.x - x).cwiseQuotient(scale)).cwiseAbs().maxCoeff();
 }
 
-bool run(const std::string& name, const data::Scene& truth, TwinOptions twin, CalibrationProblemOptions problem, std::size_t starts,
-         double asked_s) {
+bool run(const std::string& name, const data::Scene& truth, TwinOptions twin,
+         CalibrationProblemOptions problem, std::size_t starts, double asked_s) {
   problem.coordinate = truth.coordinates[0].name;
   twin.model = problem.model;
   const auto trials = noise_free_trials(make_twin(truth, twin), problem.coordinate);
@@ -96,9 +100,12 @@ bool run(const std::string& name, const data::Scene& truth, TwinOptions twin, Ca
   const CalibrationResult result = calibrate(disturbed(truth), trials, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double cpu = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
-  fmt::print("{:<8} {:<8} {:>6} parameters {:>8} residuals {:>4} evaluations  cost {:9.2e}  worst error {:8.1e}  {:7.3f} s, CPU {:7.3f} s (asked {} s)  {}\n",
-             name, hill::to_string(problem.model.tendon), at_truth.parameters().size(), at_truth.residual_count(),
-             result.summary.evaluations, result.summary.cost, worst_error(result, at_truth), seconds, cpu, asked_s, result.summary.reason);
+  fmt::print(
+      "{:<8} {:<8} {:>6} parameters {:>8} residuals {:>4} evaluations  cost {:9.2e}  worst error {:8.1e}  "
+      "{:7.3f} s, CPU {:7.3f} s (asked {} s)  {}\n",
+      name, hill::to_string(problem.model.tendon), at_truth.parameters().size(), at_truth.residual_count(),
+      result.summary.evaluations, result.summary.cost, worst_error(result, at_truth), seconds, cpu, asked_s,
+      result.summary.reason);
   return seconds <= asked_s && result.summary.cost < 1e-9;
 }
 
@@ -120,14 +127,16 @@ int main(int argc, char** argv) {
     small.model.optimal_length_coupling = 0.15;
     small.model.activation.form = emg::ActivationForm::recursive;
     small.model.recursion_rate_hz = 200.0;
-    small.free = {free_quantity(recursion_1, Scope::global), free_quantity(recursion_2, Scope::global), free_quantity(shape, Scope::global),
-                  free_quantity(tendon_slack_length, Scope::each), free_quantity(strength, Scope::group)};
+    small.free = {free_quantity(recursion_1, Scope::global), free_quantity(recursion_2, Scope::global),
+                  free_quantity(shape, Scope::global), free_quantity(tendon_slack_length, Scope::each),
+                  free_quantity(strength, Scope::group)};
     good = run("elbow12", twelve(scene), random_trials(2, 10.0), small, 3, rigid ? 0.5 : 5.0) && good;
     CalibrationProblemOptions large;
     large.model.tendon = tendon;
     large.threads = 2;
     large.free = {free_quantity(strength, Scope::group), free_quantity(tendon_slack_length, Scope::each),
-                  free_quantity(optimal_fibre_length, Scope::each), free_quantity(delay, Scope::global), free_quantity(shape, Scope::global)};
+                  free_quantity(optimal_fibre_length, Scope::each), free_quantity(delay, Scope::global),
+                  free_quantity(shape, Scope::global)};
     good = run("elbow20", scene, random_trials(6, 30.0), large, 1, rigid ? 5.0 : 30.0) && good;
   }
   return good ? 0 : 1;

@@ -21,8 +21,12 @@ std::vector<CalibrationTrial> trials(const TwinOptions& options = exact_options(
 
 CalibrationProblemOptions everything_free(bool recursive = false) {
   CalibrationProblemOptions options;
-  options.free = {free(Quantity::strength, Scope::group), free(Quantity::optimal_fibre_length), free(Quantity::tendon_slack_length),
-                  free(Quantity::max_contraction_velocity, Scope::global), free(Quantity::delay), free(Quantity::shape),
+  options.free = {free(Quantity::strength, Scope::group),
+                  free(Quantity::optimal_fibre_length),
+                  free(Quantity::tendon_slack_length),
+                  free(Quantity::max_contraction_velocity, Scope::global),
+                  free(Quantity::delay),
+                  free(Quantity::shape),
                   free(Quantity::gain)};
   options.free.push_back(free(recursive ? Quantity::recursion_1 : Quantity::time_constant_1, Scope::group));
   options.free.push_back(free(recursive ? Quantity::recursion_2 : Quantity::time_constant_2, Scope::global));
@@ -61,7 +65,8 @@ TEST_P(WholeChain, HasExactDerivativesInEveryParameter) {
   const CalibrationProblem problem(elbow(), trials(), options);
   Eigen::VectorXd x = start_of(problem.parameters());
   const Eigen::VectorXd lower = lower_of(problem.parameters()), upper = upper_of(problem.parameters());
-  for (Eigen::Index j = 0; j < x.size(); ++j) x[j] += 0.13 * ((j % 2 == 0 ? upper : lower)[j] - x[j]) * (j % 3 == 0 ? 1.0 : 0.4);
+  for (Eigen::Index j = 0; j < x.size(); ++j)
+    x[j] += 0.13 * ((j % 2 == 0 ? upper : lower)[j] - x[j]) * (j % 3 == 0 ? 1.0 : 0.4);
   for (std::size_t j = 0; j < problem.parameters().size(); ++j)  // activation stays inside [0, 1]
     if (problem.parameters()[j].name == "gain") x[static_cast<Eigen::Index>(j)] = 0.93;
   DerivativeCheckOptions check_options;
@@ -71,7 +76,8 @@ TEST_P(WholeChain, HasExactDerivativesInEveryParameter) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, WholeChain,
-                         ::testing::Values(Case{"rigid", hill::TendonKind::rigid, false}, Case{"elastic", hill::TendonKind::elastic, false},
+                         ::testing::Values(Case{"rigid", hill::TendonKind::rigid, false},
+                                           Case{"elastic", hill::TendonKind::elastic, false},
                                            Case{"rigid_recursive", hill::TendonKind::rigid, true}),
                          [](const auto& one) { return one.param.name; });
 
@@ -140,7 +146,8 @@ TEST(CalibrationProblem, ComparesAtTheReferencesOwnTimeStamps) {
   data::Signal& m = sparse.moment;
   m.info.rate_hz = 50.0;
   m.info.start_time_s = 0.035;
-  for (std::size_t i = 7; i < full[0].moment.samples.size() - 20; i += 4) m.samples.push_back(full[0].moment.samples[i]);
+  for (std::size_t i = 7; i < full[0].moment.samples.size() - 20; i += 4)
+    m.samples.push_back(full[0].moment.samples[i]);
   m.info.count = m.samples.size();
   CalibrationProblemOptions options;
   options.scale_N_m = 1.0;
@@ -185,9 +192,10 @@ TEST(CalibrationProblem, SharedLengthsAreFactorsAndOthersValues) {
   const CalibrationProblem problem(elbow(), trials(), options);
   std::vector<std::string> labels;
   for (const Parameter& p : problem.parameters()) labels.push_back(p.label());
-  EXPECT_EQ(labels, (std::vector<std::string>{"triceps tendon_slack_length_factor", "biceps tendon_slack_length_factor",
-                                              "brachialis tendon_slack_length_factor", "brachioradialis tendon_slack_length_factor",
-                                              "* delay_s", "triceps strength", "brachialis strength"}));
+  EXPECT_EQ(labels, (std::vector<std::string>{
+                        "triceps tendon_slack_length_factor", "biceps tendon_slack_length_factor",
+                        "brachialis tendon_slack_length_factor", "brachioradialis tendon_slack_length_factor",
+                        "* delay_s", "triceps strength", "brachialis strength"}));
   Eigen::VectorXd x = start_of(problem.parameters());
   x[0] = 1.02;
   const data::Subject subject = problem.subject(x);
@@ -199,7 +207,8 @@ TEST(CalibrationProblem, RefusesAMomentThatDoesNotVary) {
   auto data = trials();
   for (auto& trial : data) std::fill(trial.moment.samples.begin(), trial.moment.samples.end(), 12.5);
   EXPECT_EQ(error_of([&] { CalibrationProblem(elbow(), data, {}); }),
-            "zero-variance-moment: the reference moment does not vary over the training trials (constant 12.5 N m): no scale can be "
+            "zero-variance-moment: the reference moment does not vary over the training trials (constant "
+            "12.5 N m): no scale can be "
             "taken from it");
 }
 
@@ -207,7 +216,8 @@ TEST(CalibrationProblem, RefusesWhatIsMissingDoubleOrOffTheGrid) {
   const auto good = trials();
   auto data = good;
   data[1].moment.samples.clear();
-  EXPECT_EQ(error_of([&] { CalibrationProblem(elbow(), data, {}); }), "missing-moment: trial `random-2` has no reference moment");
+  EXPECT_EQ(error_of([&] { CalibrationProblem(elbow(), data, {}); }),
+            "missing-moment: trial `random-2` has no reference moment");
   data = good;
   data[1].name = "random-1";
   EXPECT_EQ(error_of([&] { CalibrationProblem(elbow(), data, {}); }),
@@ -223,12 +233,15 @@ TEST(CalibrationProblem, RefusesWhatIsMissingDoubleOrOffTheGrid) {
   data = good;
   data[0].moment.info.start_time_s = 100.0;
   EXPECT_EQ(error_of([&] { CalibrationProblem(elbow(), data, {}); }),
-            "empty-window: trial `random-1`: excitation, angle and moment share 0.000 s (100.000 to 2.000 s), too little after 0.000 s are "
+            "empty-window: trial `random-1`: excitation, angle and moment share 0.000 s (100.000 to 2.000 "
+            "s), too little after 0.000 s are "
             "dropped at each end");
-  EXPECT_EQ(error_of([&] { CalibrationProblem(elbow(), {}, {}); }), "no-trials: a calibration needs at least one trial");
+  EXPECT_EQ(error_of([&] { CalibrationProblem(elbow(), {}, {}); }),
+            "no-trials: a calibration needs at least one trial");
   data::Trial bare;
   bare.name = "bare";
-  EXPECT_EQ(error_of([&] { calibration_trial(bare, "elbow_flexion"); }), "missing-signal: trial `bare` has no excitation");
+  EXPECT_EQ(error_of([&] { calibration_trial(bare, "elbow_flexion"); }),
+            "missing-signal: trial `bare` has no excitation");
 }
 
 TEST(CalibrationProblem, RefusesImpossibleFreeParameters) {
@@ -242,18 +255,24 @@ TEST(CalibrationProblem, RefusesImpossibleFreeParameters) {
   f.only = {"bicepts"};
   EXPECT_EQ(message(f), "no-match: `bicepts` (of free `strength`) matches no name");
   f = free(Quantity::recursion_1);
-  EXPECT_EQ(message(f), "bad-parameter: `recursion_1` cannot be free in the continuous form of activation dynamics");
+  EXPECT_EQ(message(f),
+            "bad-parameter: `recursion_1` cannot be free in the continuous form of activation dynamics");
   f = free(Quantity::tendon_slack_length, Scope::group);
   f.lower = 0.1;
   f.upper = 0.2;
-  EXPECT_EQ(message(f).substr(0, 82), "bad-bounds: `triceps tendon_slack_length_factor` is shared as a factor: its bounds");
+  EXPECT_EQ(message(f).substr(0, 82),
+            "bad-bounds: `triceps tendon_slack_length_factor` is shared as a factor: its bounds");
   f = free(Quantity::delay);
   f.lower = 0.05;
   f.upper = 0.10;
-  EXPECT_EQ(message(f), "bad-parameter: parameter `TRIlong delay_s`: start 0.04 is outside the bounds [0.05, 0.1]");
+  EXPECT_EQ(message(f),
+            "bad-parameter: parameter `TRIlong delay_s`: start 0.04 is outside the bounds [0.05, 0.1]");
   f = free(Quantity::gain, Scope::group);
-  EXPECT_EQ(message(f), "bad-parameter: `gain` belongs to channels: its scope is \"channel\" or \"global\", not \"group\"");
-  EXPECT_EQ(error_of([] { parse_quantity("strenght"); }), "unknown-parameter: `strenght` is not a parameter that can be set free");
+  EXPECT_EQ(
+      message(f),
+      "bad-parameter: `gain` belongs to channels: its scope is \"channel\" or \"global\", not \"group\"");
+  EXPECT_EQ(error_of([] { parse_quantity("strenght"); }),
+            "unknown-parameter: `strenght` is not a parameter that can be set free");
 }
 
 }  // namespace

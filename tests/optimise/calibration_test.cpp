@@ -21,7 +21,8 @@ std::vector<CalibrationTrial> exact_trials(const TwinOptions& options = exact_op
   return noise_free_trials(make_twin(elbow(), options), "elbow_flexion");
 }
 
-const data::ParameterVerdict& verdict(const data::Subject& subject, const std::string& owner, const std::string& parameter) {
+const data::ParameterVerdict& verdict(const data::Subject& subject, const std::string& owner,
+                                      const std::string& parameter) {
   for (const auto& v : subject.verdicts)
     if (v.muscle == owner && v.parameter == parameter) return v;
   throw std::out_of_range(owner + " " + parameter);
@@ -34,9 +35,12 @@ TEST_P(NoiseFreeTwin, GivesEveryIdentifiableParameterToAMillionth) {
   twin.model.tendon = GetParam();
   CalibrationOptions options;
   options.problem.model.tendon = GetParam();
-  options.problem.free = {free(Quantity::strength, Scope::group), free(Quantity::tendon_slack_length),
-                          free(Quantity::optimal_fibre_length),   free(Quantity::delay, Scope::global),
-                          free(Quantity::time_constant_1, Scope::global), free(Quantity::time_constant_2, Scope::global),
+  options.problem.free = {free(Quantity::strength, Scope::group),
+                          free(Quantity::tendon_slack_length),
+                          free(Quantity::optimal_fibre_length),
+                          free(Quantity::delay, Scope::global),
+                          free(Quantity::time_constant_1, Scope::global),
+                          free(Quantity::time_constant_2, Scope::global),
                           free(Quantity::shape, Scope::global)};
   options.problem.decimate = 2;
   const CalibrationResult result = calibrate(disturbed(elbow()), exact_trials(twin), options);
@@ -57,10 +61,12 @@ TEST_P(NoiseFreeTwin, GivesEveryIdentifiableParameterToAMillionth) {
   }
   EXPECT_LT(result.pooled.rmse, 1e-6);
   const std::string remark = verdict(result.subject, "*", "time_constant_1_s").remark;
-  EXPECT_NE(remark.find("interchangeable with time_constant_2_s: the pair is determined, not which is which"), std::string::npos);
+  EXPECT_NE(remark.find("interchangeable with time_constant_2_s: the pair is determined, not which is which"),
+            std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tendons, NoiseFreeTwin, ::testing::Values(hill::TendonKind::rigid, hill::TendonKind::elastic),
+INSTANTIATE_TEST_SUITE_P(Tendons, NoiseFreeTwin,
+                         ::testing::Values(hill::TendonKind::rigid, hill::TendonKind::elastic),
                          [](const auto& one) { return hill::to_string(one.param); });
 
 TEST(Calibration, LinearStrengthFitAloneFindsTheStrengths) {
@@ -85,7 +91,8 @@ TEST(Calibration, EveryGradientSolverFindsTheSameOptimum) {
   for (Solver solver : {Solver::gsl_levenberg_marquardt, Solver::slsqp, Solver::lbfgs}) {
     options.solver.solver = solver;
     const CalibrationResult other = calibrate(disturbed(elbow()), trials, options);
-    EXPECT_NEAR(other.summary.cost / reference.summary.cost, 1.0, 1e-6) << to_string(solver) << other.summary.message();
+    EXPECT_NEAR(other.summary.cost / reference.summary.cost, 1.0, 1e-6)
+        << to_string(solver) << other.summary.message();
   }
 }
 
@@ -104,7 +111,8 @@ TEST(Calibration, SaysThatRecursionCoefficientsAreInterchangeable) {
                           free(Quantity::recursion_2, Scope::global)};
   data::Scene start = truth;
   for (data::SceneMuscle& m : start.muscles) m.activation.time_constant_1_s = emg::time_constant(-0.3, 200.0);
-  const CalibrationResult result = calibrate(start, noise_free_trials(make_twin(truth, twin), "elbow_flexion"), options);
+  const CalibrationResult result =
+      calibrate(start, noise_free_trials(make_twin(truth, twin), "elbow_flexion"), options);
   for (const char* name : {"recursion_1", "recursion_2"}) {
     const auto& v = verdict(result.subject, "*", name);
     EXPECT_NE(v.remark.find("interchangeable with"), std::string::npos) << v.remark;
@@ -115,7 +123,11 @@ TEST(Calibration, SaysThatRecursionCoefficientsAreInterchangeable) {
 
 TEST(Calibration, NamesGainAndStrengthAsOneWithoutAnMvc) {
   TwinOptions twin = exact_options();
-  twin.channel_gains = {{"biceps", 2.0}, {"brachialis", 1.5}, {"triceps_long", 1.7}, {"triceps_lateral", 1.7}, {"brachioradialis", 1.5}};
+  twin.channel_gains = {{"biceps", 2.0},
+                        {"brachialis", 1.5},
+                        {"triceps_long", 1.7},
+                        {"triceps_lateral", 1.7},
+                        {"brachioradialis", 1.5}};
   twin.moment_noise_sd_N_m = 1.0;
   twin.model.activation.nonlinearity = emg::Nonlinearity::none;
   CalibrationOptions options;
@@ -124,9 +136,12 @@ TEST(Calibration, NamesGainAndStrengthAsOneWithoutAnMvc) {
   const CalibrationResult result = calibrate(elbow(), exact_trials(twin), options);
   const auto& strength = verdict(result.subject, "biceps", "strength");
   const auto& gain = verdict(result.subject, "biceps", "gain");
-  EXPECT_NE(strength.remark.find("one parameter with biceps gain: without a maximal contraction or a prior only their product is known"),
-            std::string::npos) << verdict_text(result.subject);
-  EXPECT_NE(gain.remark.find("one parameter with biceps strength"), std::string::npos) << verdict_text(result.subject);
+  EXPECT_NE(strength.remark.find("one parameter with biceps gain: without a maximal contraction or a prior "
+                                 "only their product is known"),
+            std::string::npos)
+      << verdict_text(result.subject);
+  EXPECT_NE(gain.remark.find("one parameter with biceps strength"), std::string::npos)
+      << verdict_text(result.subject);
   EXPECT_NEAR(strength.fitted * gain.fitted, 2.0, 0.2);
   EXPECT_EQ(strength.verdict, "NOT IDENTIFIED") << verdict_text(result.subject);
   EXPECT_EQ(gain.verdict, "NOT IDENTIFIED") << verdict_text(result.subject);
@@ -159,7 +174,8 @@ TEST(Calibration, SaysWhenAPriorDecides) {
   const CalibrationResult result = calibrate(elbow(), exact_trials(twin), options);
   const auto& v = verdict(result.subject, "*", "max_contraction_velocity_factor");
   EXPECT_EQ(v.verdict, "NOT IDENTIFIED");
-  EXPECT_NE(v.remark.find("determined by its prior (posterior / prior sd 1.00)"), std::string::npos) << v.remark;
+  EXPECT_NE(v.remark.find("determined by its prior (posterior / prior sd 1.00)"), std::string::npos)
+      << v.remark;
 }
 
 TEST(Calibration, OfNothingIsRefused) {

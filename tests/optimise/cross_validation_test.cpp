@@ -57,7 +57,8 @@ TEST(CrossValidation, NothingOfAHeldOutTrialReachesItsFold) {
   EXPECT_TRUE((plain.folds[0].calibration.x.array() == spoiled.folds[0].calibration.x.array()).all());
   EXPECT_EQ(plain.folds[0].channel_maximum, spoiled.folds[0].channel_maximum);
   for (std::size_t m = 0; m < plain.models.size(); ++m)
-    EXPECT_EQ(plain.models[m].pooled_training.rmse, spoiled.models[m].pooled_training.rmse) << plain.models[m].model;
+    EXPECT_EQ(plain.models[m].pooled_training.rmse, spoiled.models[m].pooled_training.rmse)
+        << plain.models[m].model;
   EXPECT_GT(spoiled.models[0].pooled_held_out.rmse, plain.models[0].pooled_held_out.rmse + 10.0);
 }
 
@@ -73,7 +74,8 @@ TEST(CrossValidation, DoesNotDependOnThreads) {
 TEST(CrossValidation, FlagsATrialThatIsTrainedAndJudged) {
   const auto found = check_split({"a", "b"}, {"b", "c"});
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].message, "trial `b` is used for both training and verdict: its error says nothing of unseen trials");
+  EXPECT_EQ(found[0].message,
+            "trial `b` is used for both training and verdict: its error says nothing of unseen trials");
 }
 
 TEST(CrossValidation, NeedsTrialsToTrainOn) {
@@ -91,13 +93,16 @@ TEST(Baseline, RecoversAMomentOfItsOwnForm) {
   auto data = trials();
   for (CalibrationTrial& trial : data)
     for (std::size_t i = 0; i < trial.moment.samples.size(); ++i)
-      trial.moment.samples[i] = 2.0 + 30.0 * trial.excitations[0].samples[i] - 4.0 * std::sin(trial.angle.samples[i]);
+      trial.moment.samples[i] =
+          2.0 + 30.0 * trial.excitations[0].samples[i] - 4.0 * std::sin(trial.angle.samples[i]);
   const Baseline linear = fit_baseline({BaselineSpec::Kind::linear_envelope}, {data[0], data[1]}, 0.0);
   const BaselinePrediction p = predict(linear, data[2], 0.0);
   for (std::size_t i = 0; i < p.time_s.size(); ++i) ASSERT_NEAR(p.modelled_N_m[i], p.reference_N_m[i], 1e-9);
   const Baseline cubic = fit_baseline({BaselineSpec::Kind::angle_polynomial}, {data[0], data[1]}, 0.0);
   EXPECT_EQ(cubic.columns, (std::vector<std::string>{"q^1", "q^2", "q^3"}));
-  EXPECT_GT(metrics(predict(cubic, data[2], 0.0).reference_N_m, predict(cubic, data[2], 0.0).modelled_N_m).rmse, 0.5);
+  EXPECT_GT(
+      metrics(predict(cubic, data[2], 0.0).reference_N_m, predict(cubic, data[2], 0.0).modelled_N_m).rmse,
+      0.5);
 }
 
 TEST(Baseline, FlexibleHasFiftyTwoColumnsWithThreeChannels) {
@@ -116,7 +121,8 @@ TEST(Baseline, RefusesOtherChannelsThanItsOwn) {
     predict(linear, data[0], 0.0);
     FAIL();
   } catch (const data::InputError& error) {
-    EXPECT_EQ(error.diagnostics()[0].message, "trial `random-1` does not have the channels that `linear_envelope` was fitted with");
+    EXPECT_EQ(error.diagnostics()[0].message,
+              "trial `random-1` does not have the channels that `linear_envelope` was fitted with");
   }
 }
 

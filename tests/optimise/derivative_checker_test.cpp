@@ -31,7 +31,8 @@ TEST(DerivativeChecker, RefusesAPointOnABound) {
     check_derivatives(problem, lower_of(problem.parameters()));
     FAIL();
   } catch (const data::InputError& error) {
-    EXPECT_EQ(error.diagnostics()[0].message, "parameter `toy a` lies on its bound: no two-sided difference can be taken");
+    EXPECT_EQ(error.diagnostics()[0].message,
+              "parameter `toy a` lies on its bound: no two-sided difference can be taken");
   }
 }
 

@@ -8,7 +8,9 @@
 
 namespace brachium::optimise::tests {
 
-inline data::Scene elbow() { return io::read_scene(brachium::tests::source_dir() / "pipelines/scenes/elbow_twin.toml"); }
+inline data::Scene elbow() {
+  return io::read_scene(brachium::tests::source_dir() / "pipelines/scenes/elbow_twin.toml");
+}
 
 inline TwinTrial plan(const std::string& name, Programme programme, double duration, double effort = 0.7) {
   TwinTrial t;
@@ -25,7 +27,8 @@ inline TwinTrial plan(const std::string& name, Programme programme, double durat
 inline TwinOptions exact_options(double duration = 8.0) {
   TwinOptions options;
   options.raw_emg = false;
-  options.trials = {plan("random-1", Programme::random, duration), plan("random-2", Programme::random, duration),
+  options.trials = {plan("random-1", Programme::random, duration),
+                    plan("random-2", Programme::random, duration),
                     plan("ramp", Programme::isometric_ramp, duration)};
   return options;
 }
@@ -37,7 +40,8 @@ inline FreeQuantity free(Quantity quantity, Scope scope = Scope::each) {
   return f;
 }
 
-/// The scene with every value that a calibration may free moved away from the truth, inside the default bounds.
+/// The scene with every value that a calibration may free moved away from the truth, inside the default
+/// bounds.
 inline data::Scene disturbed(data::Scene scene) {
   double sign = 1.0;
   for (data::SceneMuscle& m : scene.muscles) {

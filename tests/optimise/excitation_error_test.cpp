@@ -24,7 +24,8 @@ TEST(EnvelopeNoise, HasUnitVarianceAndTheLowPassSpectrum) {
   // Autocorrelation at 1 / (4 f_c) against the integral of the filter's power.
   const std::size_t lag = 8;
   double lagged = 0.0, filter = 0.0, total = 0.0;
-  for (std::size_t i = 0; i + lag < x.size(); ++i) lagged += x[i] * x[i + lag] / static_cast<double>(x.size() - lag);
+  for (std::size_t i = 0; i + lag < x.size(); ++i)
+    lagged += x[i] * x[i + lag] / static_cast<double>(x.size() - lag);
   for (int b = 0; b < 20000; ++b) {
     const double f = (b + 0.5) * 0.005, s = f * std::pow(std::sqrt(2.0) - 1.0, 0.25) / cutoff;
     const double p = std::pow(1.0 + s * s * s * s, -2.0);

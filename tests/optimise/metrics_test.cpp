@@ -31,7 +31,8 @@ TEST(Metrics, OfAConstantReferenceHaveNoR2) {
 
 TEST(Metrics, PooledTakeTheVarianceAboutTheCommonMean) {
   // Two trials, each predicted by its own mean: R2 within a trial is 0, pooled it is not.
-  const std::vector<std::vector<double>> reference = {{0.0, 2.0}, {10.0, 12.0}}, model = {{1.0, 1.0}, {11.0, 11.0}};
+  const std::vector<std::vector<double>> reference = {{0.0, 2.0}, {10.0, 12.0}},
+                                         model = {{1.0, 1.0}, {11.0, 11.0}};
   EXPECT_DOUBLE_EQ(*metrics(reference[0], model[0]).r2, 0.0);
   EXPECT_DOUBLE_EQ(*pooled_metrics(reference, model).r2, 1.0 - 4.0 / 104.0);
 }

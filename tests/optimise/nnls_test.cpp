@@ -28,14 +28,15 @@ VectorXd data_vector() {
 
 TEST(NonNegativeLeastSquares, EqualsScipy) {  // reference_nnls.py
   const LinearFit fit = nnls(matrix(), data_vector());
-  const double expected[] = {0.08866649738718771, 0.0035677156146892157, 0.0, 1.0919298641772366, 0.4129046531473021};
+  const double expected[] = {0.08866649738718771, 0.0035677156146892157, 0.0, 1.0919298641772366,
+                             0.4129046531473021};
   for (int j = 0; j < 5; ++j) EXPECT_NEAR(fit.x[j], expected[j], 1e-13);
   EXPECT_NEAR(fit.residual_norm, 1.134102890229996, 1e-13);
 }
 
 TEST(BoundedLeastSquares, EqualsScipy) {  // reference_nnls.py
-  const LinearFit fit =
-      bounded_least_squares(matrix(), data_vector(), VectorXd::Constant(5, -0.1), VectorXd::Constant(5, 0.15));
+  const LinearFit fit = bounded_least_squares(matrix(), data_vector(), VectorXd::Constant(5, -0.1),
+                                              VectorXd::Constant(5, 0.15));
   const double expected[] = {-0.1, 0.05459529185010928, 0.045045837652702966, 0.15, -0.019254908262129306};
   for (int j = 0; j < 5; ++j) EXPECT_NEAR(fit.x[j], expected[j], 1e-12);
   EXPECT_NEAR(fit.residual_norm, 2.363498102752751, 1e-12);

@@ -53,9 +53,9 @@ TEST_P(EverySolver, RepeatsExactlyAndDoesNotDependOnThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver,
-                         ::testing::Values(Solver::levenberg_marquardt, Solver::gsl_levenberg_marquardt, Solver::slsqp,
-                                           Solver::lbfgs, Solver::mma, Solver::bobyqa, Solver::subplex, Solver::crs2, Solver::isres,
-                                           Solver::mlsl),
+                         ::testing::Values(Solver::levenberg_marquardt, Solver::gsl_levenberg_marquardt,
+                                           Solver::slsqp, Solver::lbfgs, Solver::mma, Solver::bobyqa,
+                                           Solver::subplex, Solver::crs2, Solver::isres, Solver::mlsl),
                          [](const auto& one) { return to_string(one.param); });
 
 TEST(Solve, OwnAndGslLevenbergMarquardtAgreeOnADisturbedDecay) {
@@ -70,10 +70,11 @@ TEST(Solve, APriorPullsTheLinearEstimateAsTheClosedFormSays) {
   // r_i = x - 3 (four times) with prior 1 +- 0.5: x = (4 * 3 + 4 * 1) / (4 + 4) = 2.
   std::vector<Parameter> parameters = {toy_parameter("x", 0.0, -10.0, 10.0)};
   parameters[0].prior = Prior{1.0, 0.5};
-  const ToyProblem problem(parameters, 4, [](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-    r = Eigen::VectorXd::Constant(4, x[0] - 3.0);
-    if (J) *J = Eigen::MatrixXd::Ones(4, 1);
-  });
+  const ToyProblem problem(parameters, 4,
+                           [](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+                             r = Eigen::VectorXd::Constant(4, x[0] - 3.0);
+                             if (J) *J = Eigen::MatrixXd::Ones(4, 1);
+                           });
   const Summary summary = solve(problem, {});
   EXPECT_NEAR(summary.x[0], 2.0, 1e-12);
   EXPECT_NEAR(summary.cost, 0.5 * (4.0 * 1.0 + 4.0), 1e-12);
@@ -100,12 +101,14 @@ TEST(Solve, MultiStartLeavesALocalMinimum) {
 
 TEST(Solve, APointWithoutAValueIsNoStepAndNotFatal) {
   // The model fails left of 0.5; the way from 3 to 1 would first overshoot there.
-  const ToyProblem problem({toy_parameter("x", 3.0, -5.0, 5.0)}, 1,
-                           [](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-                             if (x[0] < 0.5) throw data::ConvergenceFailure({"muscle `toy`, frame 3", "no root", 9, 1.0, 1.0, "toy"});
-                             r = Eigen::VectorXd::Constant(1, std::log(x[0]));
-                             if (J) *J = Eigen::MatrixXd::Constant(1, 1, 1.0 / x[0]);
-                           });
+  const ToyProblem problem(
+      {toy_parameter("x", 3.0, -5.0, 5.0)}, 1,
+      [](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+        if (x[0] < 0.5)
+          throw data::ConvergenceFailure({"muscle `toy`, frame 3", "no root", 9, 1.0, 1.0, "toy"});
+        r = Eigen::VectorXd::Constant(1, std::log(x[0]));
+        if (J) *J = Eigen::MatrixXd::Constant(1, 1, 1.0 / x[0]);
+      });
   const Summary summary = solve(problem, {});
   EXPECT_NEAR(summary.x[0], 1.0, 1e-9);
   EXPECT_NE(summary.reason.find("points without a value"), std::string::npos) << summary.reason;
@@ -132,7 +135,8 @@ TEST(Solve, RefusesBadParametersAllAtOnce) {
   } catch (const data::InputError& error) {
     ASSERT_EQ(error.diagnostics().size(), 4u);
     EXPECT_EQ(error.diagnostics()[0].message, "parameter `toy x`: start 3 is outside the bounds [0, 2]");
-    EXPECT_EQ(error.diagnostics()[1].message, "parameter `toy y`: lower bound 2 is not below the upper bound 1");
+    EXPECT_EQ(error.diagnostics()[1].message,
+              "parameter `toy y`: lower bound 2 is not below the upper bound 1");
     EXPECT_EQ(error.diagnostics()[3].code, "duplicate-parameter");
   }
 }

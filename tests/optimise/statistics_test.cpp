@@ -18,7 +18,8 @@ using Eigen::VectorXd;
 using tests::toy_parameter;
 
 struct Line {
-  std::vector<Parameter> parameters = {toy_parameter("level", 0.0, -5.0, 5.0), toy_parameter("slope", 0.0, -5.0, 5.0)};
+  std::vector<Parameter> parameters = {toy_parameter("level", 0.0, -5.0, 5.0),
+                                       toy_parameter("slope", 0.0, -5.0, 5.0)};
   MatrixXd J;
   VectorXd truth = VectorXd::Zero(2);
 
@@ -33,7 +34,8 @@ VectorXd noise(Eigen::Index m, double rho, std::uint64_t seed) {
   emg::Random random(seed);
   VectorXd out(m);
   double state = random.normal();
-  for (Eigen::Index i = 0; i < m; ++i, state = rho * state + std::sqrt(1.0 - rho * rho) * random.normal()) out[i] = state;
+  for (Eigen::Index i = 0; i < m; ++i, state = rho * state + std::sqrt(1.0 - rho * rho) * random.normal())
+    out[i] = state;
   return out;
 }
 
@@ -44,11 +46,14 @@ TEST(Statistics, OfUncorrelatedResidualsMatchTheClassicalCovarianceOfGsl) {
   const FitStatistics s = fit_statistics(line.parameters, x, r, line.J, {{"all", 0, 4000}});
   gsl_matrix* J = gsl_matrix_alloc(4000, 2);
   for (std::size_t i = 0; i < 4000; ++i)
-    for (std::size_t j = 0; j < 2; ++j) gsl_matrix_set(J, i, j, line.J(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    for (std::size_t j = 0; j < 2; ++j)
+      gsl_matrix_set(J, i, j, line.J(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
   gsl_matrix* C = gsl_matrix_alloc(2, 2);
   gsl_multifit_nlinear_covar(J, 0.0, C);
   for (Eigen::Index j = 0; j < 2; ++j) {
-    const double classical = std::sqrt(gsl_matrix_get(C, static_cast<std::size_t>(j), static_cast<std::size_t>(j))) * s.residual_sd;
+    const double classical =
+        std::sqrt(gsl_matrix_get(C, static_cast<std::size_t>(j), static_cast<std::size_t>(j))) *
+        s.residual_sd;
     EXPECT_NEAR(s.standard_error[j], classical, 0.12 * classical);
   }
   EXPECT_NEAR(s.inflation, 1.0, 0.1);
@@ -57,8 +62,8 @@ TEST(Statistics, OfUncorrelatedResidualsMatchTheClassicalCovarianceOfGsl) {
 }
 
 TEST(Statistics, IntervalsCoverTheTruthUnderAutocorrelatedNoise) {
-  // 400 independent data sets whose noise has 39 samples per independent sample: the classical +- would cover about a
-  // quarter of the time.
+  // 400 independent data sets whose noise has 39 samples per independent sample: the classical +- would cover
+  // about a quarter of the time.
   const Line line(4000);
   int covered = 0, classical = 0;
   const int sets = 400;
@@ -77,11 +82,13 @@ TEST(Statistics, IntervalsCoverTheTruthUnderAutocorrelatedNoise) {
 
 TEST(Statistics, NameADirectionThatTheDataDoNotSee) {
   // Only the product gain * strength matters: equal columns.
-  std::vector<Parameter> parameters = {toy_parameter("gain", 1.0, 0.5, 2.0), toy_parameter("strength", 1.0, 0.5, 2.0),
+  std::vector<Parameter> parameters = {toy_parameter("gain", 1.0, 0.5, 2.0),
+                                       toy_parameter("strength", 1.0, 0.5, 2.0),
                                        toy_parameter("delay", 0.0, -1.0, 1.0)};
   MatrixXd J(200, 3);
   for (Eigen::Index i = 0; i < 200; ++i) J.row(i) << std::sin(0.1 * i), std::sin(0.1 * i), std::cos(0.1 * i);
-  const FitStatistics s = fit_statistics(parameters, VectorXd::Ones(3), noise(200, 0.0, 1), J, {{"all", 0, 200}});
+  const FitStatistics s =
+      fit_statistics(parameters, VectorXd::Ones(3), noise(200, 0.0, 1), J, {{"all", 0, 200}});
   EXPECT_TRUE(std::isinf(s.standard_error[0]));
   EXPECT_TRUE(std::isinf(s.standard_error[1]));
   EXPECT_TRUE(std::isfinite(s.standard_error[2]));
@@ -89,7 +96,8 @@ TEST(Statistics, NameADirectionThatTheDataDoNotSee) {
   EXPECT_EQ(s.weak[0].text, "toy gain (+0.71) with toy strength (-0.71)");
   // A prior on one of them makes both finite, and is seen to decide.
   parameters[0].prior = Prior{1.0, 0.1};
-  const FitStatistics p = fit_statistics(parameters, VectorXd::Ones(3), noise(200, 0.0, 1), J, {{"all", 0, 200}});
+  const FitStatistics p =
+      fit_statistics(parameters, VectorXd::Ones(3), noise(200, 0.0, 1), J, {{"all", 0, 200}});
   EXPECT_TRUE(std::isfinite(p.standard_error[0]));
   EXPECT_NEAR(p.prior_ratio[0], 1.0, 1e-6);
 }
@@ -99,14 +107,16 @@ TEST(Statistics, RunningSumsEqualTheBartlettSumOfNeweyAndWest) {
   const VectorXd r = noise(300, 0.7, 5);
   StatisticsOptions options;
   options.max_lag = 9;
-  const FitStatistics s = fit_statistics(line.parameters, line.truth, r, line.J, {{"a", 0, 120}, {"b", 120, 180}}, options);
+  const FitStatistics s =
+      fit_statistics(line.parameters, line.truth, r, line.J, {{"a", 0, 120}, {"b", 120, 180}}, options);
   // The sum as it is written in the paper.
   MatrixXd S = MatrixXd::Zero(2, 2);
   const MatrixXd G = r.asDiagonal() * line.J;
   for (const auto& [first, count] : {std::pair<Eigen::Index, Eigen::Index>{0, 120}, {120, 180}})
     for (Eigen::Index i = first; i < first + count; ++i)
       for (Eigen::Index k = first; k < first + count; ++k)
-        if (std::abs(i - k) <= 9) S += (1.0 - static_cast<double>(std::abs(i - k)) / 10.0) * G.row(i).transpose() * G.row(k);
+        if (std::abs(i - k) <= 9)
+          S += (1.0 - static_cast<double>(std::abs(i - k)) / 10.0) * G.row(i).transpose() * G.row(k);
   const double n = s.effective_samples;
   const MatrixXd H = (line.J.transpose() * line.J).inverse();
   const MatrixXd C = H * S * H * n / (n - 2.0);

@@ -1,6 +1,6 @@
 #pragma once
-/// One seed of the stochastic twin: EMG as modulated noise with sensor noise, conditioned as recordings are, and what a
-/// calibration makes of it. Shared by the test (10 seeds) and the coverage benchmark (100 seeds).
+/// One seed of the stochastic twin: EMG as modulated noise with sensor noise, conditioned as recordings are,
+/// and what a calibration makes of it. Shared by the test (10 seeds) and the coverage benchmark (100 seeds).
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,12 @@
 
 namespace brachium::optimise::tests {
 
-/// Envelopes of one trial's channels: the known maximum (a maximal contraction without error) divides, the noise floor of
-/// rest is taken off in the mean square.
-inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth, const emg::SyntheticEmgOptions& electrode,
-                                                      std::uint64_t seed, std::uint64_t trial, double rate_hz) {
+/// Envelopes of one trial's channels: the known maximum (a maximal contraction without error) divides, the
+/// noise floor of rest is taken off in the mean square.
+inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth,
+                                                      const emg::SyntheticEmgOptions& electrode,
+                                                      std::uint64_t seed, std::uint64_t trial,
+                                                      double rate_hz) {
   emg::ConditioningOptions conditioning;
   conditioning.output_rate_hz = rate_hz;
   conditioning.trim_edges = true;
@@ -41,10 +43,14 @@ inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth, 
     clean.snr_db.reset();
     clean.seed = 987;
     emg::OutputLayout layout;
-    const double at_one = mean(envelope(emg::synthesise_emg(std::vector<double>(60000, 1.0), 200.0, clean).raw, layout));
+    const double at_one =
+        mean(envelope(emg::synthesise_emg(std::vector<double>(60000, 1.0), 200.0, clean).raw, layout));
     emg::SyntheticEmgOptions rest = electrode;
     rest.seed = 987;
-    return std::pair{at_one, mean(envelope(emg::synthesise_emg(std::vector<double>(60000, 0.0), 200.0, rest).raw, layout)) / at_one};
+    return std::pair{
+        at_one,
+        mean(envelope(emg::synthesise_emg(std::vector<double>(60000, 0.0), 200.0, rest).raw, layout)) /
+            at_one};
   }();
   const auto [unit, floor] = levels;
   std::vector<data::Signal> out;
@@ -66,15 +72,18 @@ inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth, 
   return out;
 }
 
-/// The law of these envelopes' noise: the electrode's spectrum, and white sensor noise, after the 30 Hz high-pass.
+/// The law of these envelopes' noise: the electrode's spectrum, and white sensor noise, after the 30 Hz
+/// high-pass.
 inline ExcitationNoise stochastic_noise(const emg::SyntheticEmgOptions& o) {
   std::vector<double> f, emg_power, noise_power;
   double emg_before = 0.0, emg_after = 0.0, noise_before = 0.0, noise_after = 0.0;
   for (int i = 0; i < static_cast<int>(0.5 * o.rate_hz); ++i) {
-    const double x = i + 0.5, r = 30.0 / x * std::pow(std::sqrt(2.0) - 1.0, 0.25), high_pass = std::pow(1.0 + std::pow(r, 4), -2);
+    const double x = i + 0.5, r = 30.0 / x * std::pow(std::sqrt(2.0) - 1.0, 0.25),
+                 high_pass = std::pow(1.0 + std::pow(r, 4), -2);
     const bool in_band = x > o.band_low_hz && x < o.band_high_hz;
-    const double spectrum = in_band ? x * x / ((x * x + o.spectrum_low_hz * o.spectrum_low_hz) *
-                                               std::pow(x * x + o.spectrum_high_hz * o.spectrum_high_hz, 2))
+    const double spectrum = in_band ? x * x /
+                                          ((x * x + o.spectrum_low_hz * o.spectrum_low_hz) *
+                                           std::pow(x * x + o.spectrum_high_hz * o.spectrum_high_hz, 2))
                                     : 0.0;
     f.push_back(x);
     emg_power.push_back(spectrum * high_pass);
@@ -86,7 +95,8 @@ inline ExcitationNoise stochastic_noise(const emg::SyntheticEmgOptions& o) {
   }
   ExcitationNoise noise;
   noise.coefficient_of_variation = envelope_coefficient_of_variation(f, emg_power, 6.0);
-  const double floor = std::pow(10.0, -*o.snr_db / 20.0) * std::sqrt(noise_after / noise_before * emg_before / emg_after);
+  const double floor =
+      std::pow(10.0, -*o.snr_db / 20.0) * std::sqrt(noise_after / noise_before * emg_before / emg_after);
   noise.floor = effective_noise_floor(floor, emg_power, noise_power);
   noise.cutoff_hz = 6.0;
   return noise;
@@ -97,9 +107,10 @@ struct StochasticOutcome {
   Eigen::VectorXd truth;
 };
 
-/// Strength and slack-length factor by group, one delay, one shape; three random trials and ramps, known maximum, 20 dB,
-/// 0.3 N m of noise in the reference.
-inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t seed, int replicates, bool correct = true) {
+/// Strength and slack-length factor by group, one delay, one shape; three random trials and ramps, known
+/// maximum, 20 dB, 0.3 N m of noise in the reference.
+inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t seed, int replicates,
+                                         bool correct = true) {
   TwinOptions options;
   options.seed = seed;
   options.raw_emg = false;
@@ -125,8 +136,9 @@ inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t
     trials[t].excitations = stochastic_envelopes(twin.truth.trials[t], electrode, seed, t + 1, 100.0);
 
   CalibrationOptions calibration;
-  for (const auto& [quantity, scope] : {std::pair{Quantity::strength, Scope::group}, std::pair{Quantity::tendon_slack_length, Scope::group},
-                                        std::pair{Quantity::delay, Scope::global}, std::pair{Quantity::shape, Scope::global}}) {
+  for (const auto& [quantity, scope] :
+       {std::pair{Quantity::strength, Scope::group}, std::pair{Quantity::tendon_slack_length, Scope::group},
+        std::pair{Quantity::delay, Scope::global}, std::pair{Quantity::shape, Scope::global}}) {
     FreeQuantity f;
     f.quantity = quantity;
     f.scope = scope;

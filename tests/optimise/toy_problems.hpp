@@ -22,7 +22,9 @@ class ToyProblem final : public LeastSquaresProblem {
   std::unique_ptr<Evaluator> evaluator() const override {
     struct Own final : Evaluator {
       explicit Own(const Residuals& f) : residuals(f) {}
-      void evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) override { residuals(x, r, J); }
+      void evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) override {
+        residuals(x, r, J);
+      }
       const Residuals& residuals;
     };
     return std::make_unique<Own>(residuals_);
@@ -52,8 +54,9 @@ inline ToyProblem rosenbrock(double upper = 2.0) {
 
 /// y_i = a exp(-b t_i) + c with a fixed disturbance; `wrong` spoils one derivative.
 inline ToyProblem decay(double wrong = 0.0) {
-  return ToyProblem({toy_parameter("a", 1.0, 0.1, 5.0), toy_parameter("b", 0.5, 0.05, 4.0), toy_parameter("c", 0.1, -1.0, 1.0)}, 40,
-                    [wrong](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+  return ToyProblem({toy_parameter("a", 1.0, 0.1, 5.0), toy_parameter("b", 0.5, 0.05, 4.0),
+                     toy_parameter("c", 0.1, -1.0, 1.0)},
+                    40, [wrong](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
                       r.resize(40);
                       if (J) J->resize(40, 3);
                       for (int i = 0; i < 40; ++i) {

@@ -15,8 +15,8 @@ using tests::plan;
 TwinOptions every_programme() {
   TwinOptions options;
   options.raw_emg = false;
-  for (Programme p : {Programme::mvc, Programme::isometric_ramp, Programme::isometric_hold, Programme::curl, Programme::isokinetic,
-                      Programme::passive_sweep, Programme::random})
+  for (Programme p : {Programme::mvc, Programme::isometric_ramp, Programme::isometric_hold, Programme::curl,
+                      Programme::isokinetic, Programme::passive_sweep, Programme::random})
     options.trials.push_back(plan(to_string(p), p, 10.0));
   return options;
 }
@@ -72,7 +72,8 @@ TEST(Twin, MomentIsTheSumOfTheMusclesShares) {
   for (const data::Signal& s : trial.signals)
     if (s.info.quantity == data::Quantity::joint_moment && !s.info.muscle.empty())
       for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += s.samples[i];
-  for (std::size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(sum[i], trial.signal("joint_moment").samples[i], 1e-12);
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    ASSERT_NEAR(sum[i], trial.signal("joint_moment").samples[i], 1e-12);
 }
 
 TEST(Twin, DynamometerAtRestReadsPassiveMomentAndGravity) {
@@ -86,7 +87,8 @@ TEST(Twin, DynamometerAtRestReadsPassiveMomentAndGravity) {
   for (const data::Segment& segment : scene.segments) S += segment.mass_kg * segment.centre_of_mass_m;
   const double gravity = -S * 9.80665 * std::sin(1.2 + scene.upper_arm_inclination_rad);
   for (std::size_t i = 0; i < 100; ++i)
-    EXPECT_NEAR(trial.signal("dynamometer_torque").samples[i] - trial.signal("joint_moment").samples[i], gravity, 1e-9);
+    EXPECT_NEAR(trial.signal("dynamometer_torque").samples[i] - trial.signal("joint_moment").samples[i],
+                gravity, 1e-9);
 }
 
 TEST(Twin, AGainShowsInTheRecordedExcitationOnly) {
@@ -95,9 +97,11 @@ TEST(Twin, AGainShowsInTheRecordedExcitationOnly) {
   const Twin plain = make_twin(tests::elbow(), options);
   options.channel_gains = {{"biceps", 2.0}};
   const Twin gained = make_twin(tests::elbow(), options);
-  const auto &e = plain.truth.trials[0].signal("biceps").samples, &g = gained.truth.trials[0].signal("biceps").samples;
+  const auto &e = plain.truth.trials[0].signal("biceps").samples,
+             &g = gained.truth.trials[0].signal("biceps").samples;
   for (std::size_t i = 0; i < e.size(); ++i) ASSERT_NEAR(2.0 * g[i], e[i], 1e-15);
-  const auto &m = plain.truth.trials[0].signal("joint_moment").samples, &n = gained.truth.trials[0].signal("joint_moment").samples;
+  const auto &m = plain.truth.trials[0].signal("joint_moment").samples,
+             &n = gained.truth.trials[0].signal("joint_moment").samples;
   for (std::size_t i = 0; i < m.size(); ++i) ASSERT_NEAR(m[i], n[i], 1e-9);
 }
 
@@ -112,7 +116,8 @@ TEST(Twin, ListsEveryOptionOutsideItsRange) {
   } catch (const data::InputError& error) {
     ASSERT_EQ(error.diagnostics().size(), 2u);
     EXPECT_EQ(error.diagnostics()[0].message, "`cocontraction` -0.1 must be in [0, 1]");
-    EXPECT_EQ(error.diagnostics()[1].message, "trial `wide`: angles 20.1 to 229.2 deg are not inside the scene's 0.0 to 150.0 deg");
+    EXPECT_EQ(error.diagnostics()[1].message,
+              "trial `wide`: angles 20.1 to 229.2 deg are not inside the scene's 0.0 to 150.0 deg");
   }
 }
 
