@@ -82,7 +82,7 @@ std::vector<OptionSpec> calibration_option_specs() {
       number_option("emg_band_low_hz", "Hz", 30.0, above(0), "lower edge of the conditioned EMG's band, for that noise"),
       number_option("emg_band_high_hz", "Hz", 220.0, above(0), "upper edge of the flat band that varies as much as EMG does: its statistical bandwidth is about 190 Hz"),
       number_option("envelope_lowpass_hz", "Hz", 6.0, above(0), "cut-off of the envelope, for that noise"),
-      integer_option("noise_replicates", 40, between(2, 10000), "simulated data sets behind the bias and the intervals"),
+      integer_option("noise_replicates", 20, between(4, 10000), "simulated data sets behind the bias and the intervals"),
       flag_option("correct_bias", true, "take the bias from errors in the excitation off the fitted values"),
   };
   for (OptionSpec& o : muscle_option_specs()) specs.push_back(std::move(o));
