@@ -287,8 +287,11 @@ void run(const StageContext& context, StageOutput& out) {
   data::Table excess_table = excess.take();
   if (excess_table.rows() > 0) out.tables["above_one"] = std::move(excess_table);
 
-  // What the report shows, from the first trial that is not a reference contraction.
-  const auto shown = std::find_if(context.trials.begin(), context.trials.end(), [&](const std::string& n) { return trial_info(input, n).kind != data::TrialKind::mvc; });
+  // What the report shows, from the first trial in which something is done but no reference contraction.
+  const auto shown = std::find_if(context.trials.begin(), context.trials.end(), [&](const std::string& n) {
+    const data::TrialKind kind = trial_info(input, n).kind;
+    return kind == data::TrialKind::calibration || kind == data::TrialKind::test;
+  });
   const std::size_t t = trial_index(input, shown == context.trials.end() ? context.trials.front() : *shown);
   const data::TrialInfo& trial = input.signals->info().trials[t];
   const std::vector<std::size_t> channels = plan.channels(trial);

@@ -86,7 +86,7 @@ data::Scene disturbed() {
   return scene;
 }
 
-const std::string exact = "excitation_cv = 0.0\ncorrect_bias = false\nnoise_replicates = 2\nedge_s = 0.1\ndecimate = 4\n";
+const std::string exact = "excitation_cv = 0.0\ncorrect_bias = false\nnoise_replicates = 4\nedge_s = 0.1\ndecimate = 4\n";
 const std::string free_without_priors =
     "free = [ { parameter = \"strength\", scope = \"group\" }, { parameter = \"tendon_slack_length\", scope = \"group\", relative = true },"
     " { parameter = \"shape\", scope = \"global\" }, { parameter = \"delay\", scope = \"global\" } ]\n";
