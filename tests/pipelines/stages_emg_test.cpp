@@ -176,17 +176,6 @@ TEST(ActivationStage, GivesTheTwinsActivationsFromItsExcitations) {
   }
 }
 
-/// The scene's own values as a subject.
-StageData subject_data() {
-  StageData data = session_data({});
-  data.stage = "subject";
-  data::Subject subject;
-  for (const data::SceneMuscle& m : elbow().muscles) subject.muscles.push_back({m.name, m.group, m.parameters, m.activation});
-  subject.model = {{"curves", "degroote_fregly_2016"}, {"tendon", "rigid"}, {"activation_form", "continuous"}, {"nonlinearity", "exponential"}};
-  data.subject = subject;
-  return data;
-}
-
 TEST(ActivationStage, ASubjectBringsItsParametersAndGains) {
   StageData subject = subject_data();
   const Inputs plain = {{"excitation", {&truth()}}, {"subject", {&subject}}};

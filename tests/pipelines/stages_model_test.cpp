@@ -38,17 +38,6 @@ TEST(MomentStage, IsTheSumOfForceTimesMomentArm) {
   EXPECT_LT(largest_difference(sum, signal(m, "curl", "elbow_flexion_moment").samples), 1e-10);
 }
 
-/// The scene's own values as a subject.
-StageData subject_data() {
-  StageData data = session_data({});
-  data.stage = "subject";
-  data::Subject subject;
-  for (const data::SceneMuscle& m : elbow().muscles) subject.muscles.push_back({m.name, m.group, m.parameters, m.activation});
-  subject.model = {{"curves", "degroote_fregly_2016"}, {"tendon", "rigid"}, {"activation_form", "continuous"}, {"nonlinearity", "exponential"}};
-  data.subject = subject;
-  return data;
-}
-
 TEST(MomentStage, ASubjectsStrengthScalesTheMoment) {
   StageData subject = subject_data();
   for (data::SubjectMuscle& m : subject.subject->muscles) m.parameters.strength = 1.25;

@@ -80,6 +80,17 @@ inline StageData changed(const StageData& data, const std::function<void(data::S
   return out;
 }
 
+/// The scene's own values as a subject.
+inline StageData subject_data() {
+  StageData data = session_data({});
+  data.stage = "subject";
+  data::Subject subject;
+  for (const data::SceneMuscle& m : elbow().muscles) subject.muscles.push_back({m.name, m.group, m.parameters, m.activation});
+  subject.model = {{"curves", "degroote_fregly_2016"}, {"tendon", "rigid"}, {"activation_form", "continuous"}, {"nonlinearity", "exponential"}};
+  data.subject = subject;
+  return data;
+}
+
 /// The findings of the InputError that `f` throws, as a terminal shows them; empty where it throws none.
 inline std::string error_of(const std::function<void()>& f) {
   try {
