@@ -1,0 +1,109 @@
+#pragma once
+/// Solves a problem along its programme: Newton with a consistent tangent, line search, adaptive load steps, tangent
+/// predictor, chord iterations where they pay, augmented Lagrange for exact incompressibility, stability of every
+/// accepted state, continuation past limit points by viscous relaxation, restart.
+///
+/// Options -> solve -> Summary; every accepted state goes to an observer.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/assembly/assembly.hpp"
+#include "fem/solve/problem.hpp"
+
+namespace brachium::fem {
+
+struct SolveOptions {
+  double relative_residual = 1e-8;      ///< |R| over the norm of the internal forces (reactions included)
+  double relative_step = 1e-6;          ///< |du| over the norm of the displacement
+  int max_iterations = 20;              ///< Newton iterations a step
+  bool predictor = true;
+  bool chord = true;                    ///< reuse a factor while the contraction is good enough
+  double smallest_step = 1.0 / 1024.0;  ///< fraction of a phase; below it the solve fails (or relaxes)
+  double largest_step = 1.0;
+  bool grow_steps = true;
+  double volume_tolerance = 1e-8;       ///< on |theta - 1| where a bulk modulus is infinite (augmented Lagrange)
+  int max_augmentations = 30;
+  double penalty_pa = 0.0;              ///< 0: chosen from the materials and said
+  std::string stability = "every_state";   ///< "every_state", "phase_ends", "off"
+  std::string on_instability = "relax";    ///< "relax": viscous continuation to a stable state; "report"; "fail"
+  std::string linear_solver = "ldl";       ///< fem/linear
+  std::string ordering = "metis";          ///< "metis", "amd"
+  std::size_t threads = 0;
+  bool deterministic = true;
+};
+
+/// Where the body is; everything that a restart needs.
+struct SolveState {
+  Configuration configuration;
+  int phase = 0;                             ///< index of the phase in progress
+  double phase_time = 0.0;                   ///< [0, 1] within it
+  std::map<std::string, double> amplitude;   ///< by boundary condition
+  Eigen::VectorXd released_force;            ///< fading reactions by dof [N]; empty: none
+  std::vector<std::string> released;         ///< conditions that no longer hold
+  double step_size = 0.0;                    ///< next step, fraction of the phase
+};
+
+struct Stability {
+  std::string verdict;    ///< "stable", "unstable", "not checked"
+  long negative_modes = 0;
+  std::string method;     ///< "LDL' inertia, growth 12", "Cholesky"
+};
+
+/// One row of the convergence history.
+struct IterationRecord {
+  int step = 0, iteration = 0;
+  double residual_norm = 0.0, relative_residual = 0.0, step_norm = 0.0, energy_norm = 0.0;
+  double line_search = 1.0;
+  std::string kind;       ///< "newton", "chord", "predictor", "augment", "relax"
+  int worst_cell = -1;    ///< smallest J
+  double worst_jacobian = 1.0;
+};
+
+struct StepRecord {
+  int step = 0;
+  std::string phase;
+  double phase_time = 0.0;
+  int newton_iterations = 0, chord_iterations = 0, augmentations = 0, relaxation_steps = 0, cut_backs = 0;
+  double energy = 0.0, volume = 0.0, worst_volume = 0.0, smallest_jacobian = 1.0;
+  int smallest_jacobian_cell = -1;
+  double relative_residual = 0.0;
+  Stability stability;
+  double seconds = 0.0;
+  std::vector<IterationRecord> iterations;
+};
+
+/// What an observer sees at an accepted state.
+struct AcceptedState {
+  const SolveState& state;
+  const StepRecord& record;
+  const Eigen::VectorXd& internal_force;  ///< by dof, global axes [N]: at held dofs the reactions (minus applied loads)
+  const Eigen::VectorXd& external_force;  ///< by dof, global axes [N]: applied loads
+};
+
+struct Summary {
+  bool completed = false;
+  std::string reason;  ///< why it stopped where it did not complete
+  std::vector<StepRecord> steps;
+  SolveState last;     ///< last converged state
+  long newton_iterations = 0, chord_iterations = 0, factorisations = 0, augmentations = 0, relaxation_steps = 0;
+  double assembly_seconds = 0.0, factor_seconds = 0.0, solve_seconds = 0.0, total_seconds = 0.0, analyse_seconds = 0.0;
+  long unknowns = 0;
+  double factor_nonzeros = 0.0, factor_flops = 0.0;
+  std::vector<data::Diagnostic> diagnostics;  ///< warnings: unstable states, unsymmetric tangent, slow convergence
+};
+
+using Observer = std::function<void(const AcceptedState&)>;
+using Progress = std::function<void(double fraction, const std::string& what)>;
+
+/// Throws InputError with everything that check(problem) finds. A failed solve does not throw: the summary says where
+/// and why, and keeps the last converged state.
+Summary solve(const Problem& problem, const SolveOptions& options, const Observer& observer = {},
+              const Progress& progress = {}, const SolveState* restart = nullptr);
+
+}  // namespace brachium::fem
