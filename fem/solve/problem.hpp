@@ -31,6 +31,11 @@ struct PrescribedDisplacement {
   Eigen::Vector3d displacement_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
+/// u = amplitude * value, point by point: measured surfaces, and fields known in closed form.
+struct PrescribedField {
+  Eigen::Matrix3Xd displacement_m;  ///< 3 x n, columns in the order of Mesh::surface_points; NaN leaves a component free
+};
+
 /// x = centre + R (X - centre) + amplitude * translation, R = rotation about `axis` by amplitude * angle.
 struct RigidMotion {
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
@@ -54,10 +59,18 @@ struct FollowerPressure {
   double pressure_pa = 0.0;
 };
 
+/// Force per reference volume, fixed in direction (weight; sources of manufactured solutions). Acts on the whole body:
+/// its `surface` is empty.
+struct BodyForce {
+  Eigen::Matrix3Xd force_n_m3;  ///< one column: uniform; or one per quadrature point, columns as in TissueField
+};
+
 struct BoundaryCondition {
   std::string name;     ///< unique
-  std::string surface;  ///< surface or node set of the mesh
-  std::variant<Fixed, PrescribedDisplacement, RigidMotion, SymmetryPlane, DeadTraction, FollowerPressure> kind;
+  std::string surface;  ///< surface or node set of the mesh; empty for a body force
+  std::variant<Fixed, PrescribedDisplacement, PrescribedField, RigidMotion, SymmetryPlane, DeadTraction,
+               FollowerPressure, BodyForce>
+      kind;
 };
 
 // ---------------------------------------------------------------- load programme
