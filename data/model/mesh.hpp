@@ -6,7 +6,8 @@
 ///   tet10  tet4, then edges 01 12 20 03 13 23
 ///   hex8   0-3 bottom face counter-clockwise seen from the top, 4-7 the top face above them
 ///   hex20  hex8, then edges 01 12 23 30 | 45 56 67 74 | 04 15 26 37
-///   hex27  hex20, then face centres -x (0473) +x (1562) -y (0154) +y (3267) -z (0321) +z (4567), then the centre
+///   hex27  hex20, then face centres -x (0473) +x (1562) -y (0154) +y (3267) -z (0321) +z (4567), then the
+///   centre
 /// Local coordinates: hexahedra in [-1, 1]^3 with node 0 at (-1,-1,-1), 1 at (1,-1,-1), 3 at (-1,1,-1), 4 at
 /// (-1,-1,1); tetrahedra with node 0 at the origin, 1, 2, 3 at the unit points.
 
@@ -49,14 +50,14 @@ struct NamedSurface {
 
 struct Mesh {
   CellType type = CellType::hex8;
-  Eigen::Matrix3Xd points;                             ///< 3 x n_points [m]
-  Eigen::MatrixXi cells;                               ///< nodes_per_cell x n_cells, indices into points
-  std::vector<std::string> regions;                    ///< names, unique
-  std::vector<int> region_of_cell;                     ///< n_cells, indices into regions
-  std::vector<NamedSurface> surfaces;                  ///< names unique
-  std::map<std::string, std::vector<int>> node_sets;   ///< named points
-  std::map<std::string, Eigen::MatrixXd> point_fields; ///< components x n_points
-  std::map<std::string, Eigen::MatrixXd> cell_fields;  ///< components x n_cells
+  Eigen::Matrix3Xd points;                              ///< 3 x n_points [m]
+  Eigen::MatrixXi cells;                                ///< nodes_per_cell x n_cells, indices into points
+  std::vector<std::string> regions;                     ///< names, unique
+  std::vector<int> region_of_cell;                      ///< n_cells, indices into regions
+  std::vector<NamedSurface> surfaces;                   ///< names unique
+  std::map<std::string, std::vector<int>> node_sets;    ///< named points
+  std::map<std::string, Eigen::MatrixXd> point_fields;  ///< components x n_points
+  std::map<std::string, Eigen::MatrixXd> cell_fields;   ///< components x n_cells
 
   int point_count() const { return static_cast<int>(points.cols()); }
   int cell_count() const { return static_cast<int>(cells.cols()); }
@@ -70,8 +71,30 @@ struct Mesh {
 /// Faces that belong to one cell only, in the order of cells.
 std::vector<CellFace> boundary_faces(const Mesh& mesh);
 
-/// Structure: sizes agree, indices in range, names unique, no cell twice. Every mistake found, none thrown:
-/// codes mesh-*; empty when sound. Geometry (inverted cells) is judged by fem/mesh/quality.hpp.
+/// Finds the cells at a face by its corners.
+class FaceTable {
+ public:
+  explicit FaceTable(const Mesh& mesh);
+  /// The faces with these 3 or 4 corner points, in any order: none, one at the boundary, two inside.
+  std::vector<CellFace> find(std::span<const int> corners) const;
+
+  using Key = std::array<int, 4>;  ///< corner points, rising; -1 first for triangles
+  struct Entry {
+    Key key;
+    CellFace face;
+    auto operator<=>(const Entry&) const = default;
+  };
+  const std::vector<Entry>& entries() const { return entries_; }  ///< sorted: faces of one key stand together
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+/// Structure: sizes agree, indices in range, names unique, no cell twice, at most two cells at a face and
+/// these with the same edge nodes. Every mistake found, none thrown: codes mesh-empty, mesh-size, mesh-index,
+/// mesh-not-finite, mesh-duplicate-name, mesh-repeated-point, mesh-duplicate-cell, mesh-shared-face,
+/// mesh-nonconforming; empty when sound. Of each kind the first places are named, with the count. Geometry
+/// (inverted cells) is judged by fem/mesh/quality.hpp.
 std::vector<Diagnostic> check_structure(const Mesh& mesh);
 
 }  // namespace brachium::data
