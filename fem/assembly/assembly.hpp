@@ -14,7 +14,7 @@
 
 namespace brachium::fem {
 
-/// What the interior of the body depends on. Vectors by dof (assembly/discretisation.hpp).
+/// What the interior of the body depends on. Vectors by dof (assembly/discretisation.hpp), in global axes.
 struct Configuration {
   Eigen::VectorXd dofs;              ///< dof_count: displacements [m], continuous pressures [Pa] (tension positive)
   Eigen::VectorXd activation;        ///< by region, [0, 1]
@@ -34,6 +34,7 @@ struct Assembled {
   double energy = 0.0;         ///< J, stored and volumetric (without loads)
   double volume = 0.0;         ///< m3, deformed
   double worst_volume = 0.0;   ///< max over cells and points of |theta - 1| (discontinuous) or of |J - 1|
+  double cell_force_norm = 0.0;  ///< N, sqrt(sum over cells of |f_cell|^2): internal forces before they cancel at nodes
   double smallest_jacobian = 1.0;
   int smallest_jacobian_cell = -1;
   std::optional<AssemblyFailure> failure;  ///< then nothing else is valid
@@ -61,10 +62,11 @@ class Assembly {
   /// Numbers the dofs that are not held and finds the tangent's pattern. `held`: by dof; `frames` may be empty.
   Unknowns number(const std::vector<char>& held, const Eigen::Matrix3Xd& frames) const;
 
-  /// Internal forces by dof (in the nodes' frames): residual = dW/du - 0. Size dof_count.
+  /// Internal forces by dof (global axes): residual = dW/du - 0. Size dof_count.
   Assembled residual(const Configuration& configuration, Eigen::VectorXd& force) const;
 
-  /// Residual and tangent: values on unknowns.pattern (lower triangle). The tangent of internal forces only.
+  /// Residual (by dof, global axes) and tangent: values on unknowns.pattern (lower triangle), rows and columns of a node
+  /// in its frame. The tangent of internal forces only.
   Assembled tangent(const Configuration& configuration, const Unknowns& unknowns, Eigen::VectorXd& force,
                     std::vector<double>& values) const;
 

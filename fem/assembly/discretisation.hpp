@@ -5,7 +5,8 @@
 /// All displacement degrees of freedom are numbered 3 node + component ("dof"); those that no constraint holds are
 /// unknowns. Continuous pressures follow as dofs 3 n_nodes + vertex.
 ///
-/// Frames: a node on an oblique symmetry plane has its own axes; dofs of that node are components in them.
+/// Frames: a node on an oblique symmetry plane has its own axes; its unknowns and its rows of the tangent are components
+/// in them. Vectors by dof are in global axes throughout.
 
 #include <Eigen/Core>
 #include <memory>
