@@ -9,7 +9,7 @@
 namespace brachium::emg {
 namespace {
 
-constexpr std::size_t full_lanes = 16;
+constexpr std::size_t most_channels = 16;
 
 // All channels of a trial must be sampled alike to be filtered side by side.
 void check_alike(const data::TrialInfo& trial, std::span<const std::size_t> signals) {
@@ -40,7 +40,7 @@ StreamResult condition_trial(const ConditioningOptions& options, const data::Ses
   result.layout = output_layout(result.chain, first.count, trial_info.name);
 
   const std::size_t affordable = memory_budget_bytes / std::max<std::size_t>(1, first.count * sizeof(double));
-  const std::size_t group = std::clamp<std::size_t>(affordable, 1, full_lanes);
+  const std::size_t group = std::clamp<std::size_t>(affordable, 1, most_channels);
   std::vector<std::vector<double>> memory(std::min(group, signals.size()));
   for (std::vector<double>& m : memory) m.resize(first.count);
 

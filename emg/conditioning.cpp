@@ -11,54 +11,68 @@
 namespace brachium::emg {
 namespace {
 
-// Sum in eight interleaved parts, so that additions need not wait for each other, in blocks, so that the rounding error
-// does not grow with the length. The order of additions is fixed: the same bits everywhere.
-template <class Term>
-double blocked_sum(std::span<const double> x, Term term) {
+// Sum in eight interleaved parts, so that additions need not wait for each other, in blocks, so that the
+// rounding error does not grow with the length. The order of additions is fixed: the same bits everywhere.
+double blocked_sum(std::span<const double> x) {
   double total = 0.0;
   for (std::size_t first = 0; first < x.size(); first += 4096) {
     const std::span<const double> block = x.subspan(first, std::min<std::size_t>(4096, x.size() - first));
     double part[8] = {};
     std::size_t k = 0;
     for (; k + 8 <= block.size(); k += 8) {
-      for (std::size_t i = 0; i < 8; ++i) part[i] += term(block[k + i]);
+      for (std::size_t i = 0; i < 8; ++i) part[i] += block[k + i];
     }
-    for (; k < block.size(); ++k) part[0] += term(block[k]);
+    for (; k < block.size(); ++k) part[0] += block[k];
     total += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
   }
   return total;
 }
 
-// 0 x is 0 unless x is NaN or Inf.
-bool all_finite(std::span<const double> x) {
-  return blocked_sum(x, [](double v) { return 0.0 * v; }) == 0.0;
+// Sum of a channel's samples, edges of `edge` samples excluded, and whether it can be believed: a NaN or Inf
+// among all samples makes it NaN or Inf, so that one pass over memory does for both.
+struct Sum {
+  double inner = 0.0;
+  bool finite = true;
+};
+Sum sum_of(std::span<const double> x, std::size_t edge) {
+  const double inner = blocked_sum(x.subspan(edge, x.size() - 2 * edge));
+  return {inner, std::isfinite(inner + (blocked_sum(x.first(edge)) + blocked_sum(x.last(edge))))};
 }
 
 void check_samples(const ConditioningChain& chain, std::span<const std::span<double>> channels,
-                   std::span<const std::string> names, const std::string& trial) {
+                   std::span<const Sum> sums, std::span<const std::string> names, const std::string& trial) {
   std::vector<data::Diagnostic> list;
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    if (all_finite(channels[c])) continue;
+    if (sums[c].finite) continue;
     const auto bad = [](double x) { return !std::isfinite(x); };
     const auto first = std::find_if(channels[c].begin(), channels[c].end(), bad);
+    if (first == channels[c].end()) {
+      list.push_back(
+          {data::Severity::error, "not-finite",
+           fmt::format("the sum of the samples of channel `{}` of trial `{}` is beyond the range of numbers",
+                       names[c], trial),
+           std::nullopt, "check the channel's unit and its file"});
+      continue;
+    }
     const auto count = std::count_if(channels[c].begin(), channels[c].end(), bad);
     const auto index = static_cast<std::size_t>(first - channels[c].begin());
-    list.push_back({data::Severity::error, "not-finite",
-                    fmt::format("channel `{}` of trial `{}` has {} samples that are not finite, the first, {}, at {:.6g} s",
-                                names[c], trial, count, *first, static_cast<double>(index) / chain.rate_hz),
-                    std::nullopt, "cut the trial, or leave the channel out by name"});
+    list.push_back(
+        {data::Severity::error, "not-finite",
+         fmt::format(
+             "channel `{}` of trial `{}` has {} samples that are not finite, the first, {}, at {:.6g} s",
+             names[c], trial, count, *first, static_cast<double>(index) / chain.rate_hz),
+         std::nullopt, "cut the trial, or leave the channel out by name"});
   }
   if (!list.empty()) throw data::InputError(std::move(list));
 }
 
-// Mean without the edges.
-double offset_of(std::span<const double> x, const ConditioningChain& chain) {
-  const std::size_t edge = std::min(static_cast<std::size_t>(chain.options.offset_edge_s * chain.rate_hz), x.size() / 4);
-  const std::span<const double> inner = x.subspan(edge, x.size() - 2 * edge);
-  return blocked_sum(inner, [](double v) { return v; }) / static_cast<double>(inner.size());
+// Samples at either end that the mean leaves out.
+std::size_t offset_edge(const ConditioningChain& chain, std::size_t count) {
+  return std::min(static_cast<std::size_t>(chain.options.offset_edge_s * chain.rate_hz), count / 4);
 }
 
-void apply(const DesignedFilter& filter, std::span<const std::span<double>> channels, const Preparation& preparation) {
+void apply(const DesignedFilter& filter, std::span<const std::span<double>> channels,
+           const Preparation& preparation) {
   if (filter.spec.phase == Phase::zero_lag) {
     filter_zero_lag(filter.sections, channels, preparation);
   } else {
@@ -99,36 +113,47 @@ OutputLayout condition(const ConditioningChain& chain, std::span<const std::span
   const std::size_t n = channels.front().size();
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (channels[c].size() != n) {
-      throw data::InputError("length-mismatch",
-                             fmt::format("channels `{}` and `{}` of trial `{}` differ in length: {} and {} samples",
-                                         names[0], names[c], trial, n, channels[c].size()));
+      throw data::InputError(
+          "length-mismatch",
+          fmt::format("channels `{}` and `{}` of trial `{}` differ in length: {} and {} samples", names[0],
+                      names[c], trial, n, channels[c].size()));
     }
   }
   const OutputLayout layout = output_layout(chain, n, trial);
-  check_samples(chain, channels, names, trial);
+  const std::size_t edge = offset_edge(chain, n);
+  std::vector<Sum> sums;
+  for (const std::span<double>& channel : channels) sums.push_back(sum_of(channel, edge));
+  check_samples(chain, channels, sums, names, trial);
   if (steps && (steps->channel >= channels.size() || steps->first + steps->count > n)) {
     throw std::logic_error("condition: the window of steps lies outside the trial");
   }
 
   std::vector<double> offset(channels.size(), 0.0);
   if (chain.options.remove_offset) {
-    for (std::size_t c = 0; c < channels.size(); ++c) offset[c] = offset_of(channels[c], chain);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      offset[c] = sums[c].inner / static_cast<double>(n - 2 * edge);
   }
   if (steps) {
     steps->raw = window_of(*steps, channels);
     steps->offset_removed = steps->raw;
     for (double& x : steps->offset_removed) x -= offset[steps->channel];
   }
-  run(chain.band, channels, {chain.options.remove_offset ? std::span<const double>(offset) : std::span<const double>{}, false});
-  if (steps) {
-    steps->filtered = window_of(*steps, channels);
-    steps->rectified = steps->filtered;
-    if (chain.options.rectify) {
-      for (double& x : steps->rectified) x = std::abs(x);
+  for (std::size_t first = 0; first < channels.size(); first += channels_at_once) {
+    const std::size_t size = std::min(channels_at_once, channels.size() - first);
+    const std::span<const std::span<double>> group = channels.subspan(first, size);
+    const bool shown = steps && steps->channel >= first && steps->channel < first + size;
+    const std::span<const double> subtract = std::span<const double>(offset).subspan(first, size);
+    run(chain.band, group, {chain.options.remove_offset ? subtract : std::span<const double>{}, false});
+    if (shown) {
+      steps->filtered = window_of(*steps, channels);
+      steps->rectified = steps->filtered;
+      if (chain.options.rectify) {
+        for (double& x : steps->rectified) x = std::abs(x);
+      }
     }
+    run(chain.envelope, group, {{}, chain.options.rectify});
+    if (shown) steps->envelope = window_of(*steps, channels);
   }
-  run(chain.envelope, channels, {{}, chain.options.rectify});
-  if (steps) steps->envelope = window_of(*steps, channels);
 
   for (const std::span<double>& channel : channels) {
     if (layout.first > 0) {

@@ -77,7 +77,7 @@ OutputLayout condition(const ConditioningChain& chain, std::span<const std::span
                        ConditioningSteps* steps = nullptr, std::vector<double>* offsets = nullptr);
 
 /// Reads signals of one trial from a source, a group of channels at a time so that the group's samples stay within
-/// memory_budget_bytes (at least one channel; at most 16, one full set of lanes), and writes envelopes under the same
+/// memory_budget_bytes (at least one channel, at most 16), and writes envelopes under the same
 /// names (quantity emg, unit as read: they become excitations by normalisation) with what was done as attributes. All signals must have one rate and one length
 /// (InputError "rate-mismatch"). The trial must have been begun in the sink.
 struct StreamResult {
