@@ -39,6 +39,9 @@ const std::vector<ErrorCode>& error_codes() {
        "The table or polynomial of a muscle path is not usable: too few knots, angles that do not rise, or "
        "missing coefficients."},
       {"bad-layout", "The declared layout of a file contradicts itself or the file."},
+      {"bad-mesh-option",
+       "A size, count or grading of a generated mesh is outside what a mesh can be made with; the message "
+       "gives the allowed range."},
       {"bad-name",
        "A name holds characters that it cannot have: it becomes part of a file, or names an object of an "
        "HDF5 file."},
@@ -60,6 +63,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"cannot-write",
        "The run folder cannot be made or written to. Check the path, its permissions and the space on the "
        "disk."},
+      {"cell-type-mismatch",
+       "The cells of a mesh are not of the type that the computation or conversion needs."},
       {"column-count-mismatch", "A storage file states another number of columns than it has labels."},
       {"conflicting-keys", "Two keys that exclude each other are both given."},
       {"constant-channel",
