@@ -1,6 +1,6 @@
 #pragma once
-/// What a material law is asked at one quadrature point, and what it answers. T is double, or a vector of lanes that
-/// holds the same point of several cells (fem/material/lanes.inc).
+/// What a material law is asked at one quadrature point, and what it answers. T is double, or `Lanes`, which hold the
+/// same point of four cells (fem/material/lanes.inc).
 ///
 /// Symmetric tensors have six components in the order 11 22 33 12 23 13 (tensor components, no factors of two).
 ///
@@ -16,8 +16,16 @@
 /// | W        | energy          | J/m3 | stored energy per reference volume, without the volumetric part           |
 /// | S        | S               | Pa   | second Piola-Kirchhoff stress 2 dW/dC                                     |
 /// | CC       | CC              | Pa   | 2 dS/dC, upper triangle by rows: (0,0) (0,1) .. (0,5) (1,1) .. (5,5)       |
+///
+/// CC_(ij)(kl) are tensor components as well: dS_ij = CC_ijkl dE_kl summed over all nine (k, l), E = (C - 1)/2.
 
 namespace brachium::fem {
+
+typedef double Lanes __attribute__((vector_size(32)));      ///< one value for each of four points
+typedef long long LaneMask __attribute__((vector_size(32)));
+
+/// What a law computes beside the stress, as bits: laws.inc leaves out what is not wanted.
+enum Wanted : int { stress_only = 0, with_tangent = 1, with_energy = 2, everything = 3 };
 
 template <class T>
 struct MaterialPoint {
@@ -30,6 +38,7 @@ struct MaterialPoint {
   double inverse_dt = 0.0;
 };
 
+/// Parts that were not wanted are left as they were.
 template <class T>
 struct MaterialResponse {
   T energy;
