@@ -1,7 +1,7 @@
 #pragma once
-/// Parameters of the material laws: plain values in SI units. Nothing has a default that could pass for a material: what
-/// is not given is NaN and refused by check() (fem/material/material.hpp). Named sets: fem/material/parameter_sets.hpp.
-/// The formulas are in fem/material/laws.inc.
+/// Parameters of the material laws: plain values in SI units. Nothing has a default that could pass for a
+/// material: what is not given is NaN and refused by check() (fem/material/material.hpp). Named sets:
+/// fem/material/parameter_sets.hpp. The formulas are in fem/material/laws.inc.
 
 #include <limits>
 
@@ -11,8 +11,8 @@ constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
 // ---------------------------------------------------------------- muscle and tendon
 
-/// One tissue of a muscle-tendon complex: isotropic ground c1 (I1 - 3) + c2 (I2 - 3), fibres that bear tension only,
-/// nominal stress c3/lambda (lambda^c4 - 1) for lambda >= 1.
+/// One tissue of a muscle-tendon complex: isotropic ground c1 (I1 - 3) + c2 (I2 - 3), fibres that bear
+/// tension only, nominal stress c3/lambda (lambda^c4 - 1) for lambda >= 1.
 struct FibrousTissue {
   double c1_pa = not_given;  ///< >= 0, c1 + c2 > 0
   double c2_pa = not_given;  ///< >= 0
@@ -30,13 +30,15 @@ struct ForceLength {
   double descending_exponent = not_given;  ///< nu there, [1.2, 10]
 };
 
-/// Active force-velocity multiplier over the fibre's rate of stretch v = (d lambda/dt)/(v_max lambda_opt), lengthening
-/// positive:
+/// Active force-velocity multiplier over the fibre's rate of stretch v = (d lambda/dt)/(v_max lambda_opt),
+/// lengthening positive:
 ///   v <= -1      f_v = 0
 ///   -1 < v <= 0  f_v = (1 + v)/(1 - v/k)                    Hill 1938, doi:10.1098/rspb.1938.0050, k = a/F0
-///   v > 0        f_v = 1 + (e - 1) v/(v + (e - 1)/s)        s = 1 + 1/k, the slope from the left: f_v is smooth at 0
-/// The eccentric branch is a hyperbola that tends to e, as in van Soest & Bobbert 1993, doi:10.1007/BF00198959, who make
-/// its slope at 0 twice the concentric one; here the slope is continuous, so that Newton's tangent is.
+///   v > 0        f_v = 1 + (e - 1) v/(v + (e - 1)/s)        s = 1 + 1/k, the slope from the left: f_v is
+///   smooth at 0
+/// The eccentric branch is a hyperbola that tends to e, as in van Soest & Bobbert 1993,
+/// doi:10.1007/BF00198959, who make its slope at 0 twice the concentric one; here the slope is continuous, so
+/// that Newton's tangent is.
 struct ForceVelocity {
   double max_rate_per_s = not_given;   ///< v_max, optimal lengths a second, > 0
   double curvature = not_given;        ///< k, > 0 (Hill's a/F0, about 0.25)
@@ -86,8 +88,8 @@ struct MooneyRivlin {
 // ---------------------------------------------------------------- transversely isotropic
 
 /// W = C/2 (exp Q - 1), Q = bf E_ff^2 + bt (E_ss^2 + E_nn^2 + 2 E_sn^2) + 2 bfs (E_fs^2 + E_fn^2), f along a0
-/// (Guccione, McCulloch & Waldman 1991, doi:10.1115/1.2894084; Land et al. 2015, doi:10.1098/rspa.2015.0641), of
-/// E = (C - 1)/2 or with `isochoric` of (J^(-2/3) C - 1)/2.
+/// (Guccione, McCulloch & Waldman 1991, doi:10.1115/1.2894084; Land et al. 2015, doi:10.1098/rspa.2015.0641),
+/// of E = (C - 1)/2 or with `isochoric` of (J^(-2/3) C - 1)/2.
 struct FungGuccione {
   double stiffness_pa = not_given;  ///< C > 0
   double bf = not_given;            ///< > 0
@@ -96,8 +98,8 @@ struct FungGuccione {
   bool isochoric = false;
 };
 
-/// Muscle of Blemker, Pinsky & Delp 2005, doi:10.1016/j.jbiomech.2004.04.009, as FEBio's "muscle material" has it: all of
-/// J^(-2/3) C. Along-fibre and cross-fibre shear, fibres with passive and active stress.
+/// Muscle of Blemker, Pinsky & Delp 2005, doi:10.1016/j.jbiomech.2004.04.009, as FEBio's "muscle material"
+/// has it: all of J^(-2/3) C. Along-fibre and cross-fibre shear, fibres with passive and active stress.
 struct BlemkerMuscle {
   double along_fibre_shear_pa = not_given;   ///< G1 >= 0
   double cross_fibre_shear_pa = not_given;   ///< G2 > 0

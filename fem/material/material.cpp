@@ -27,7 +27,8 @@ namespace avx2 {
 
 }  // namespace
 
-void evaluate(const Material& material, const MaterialPoint<double>& point, MaterialResponse<double>& response) {
+void evaluate(const Material& material, const MaterialPoint<double>& point,
+              MaterialResponse<double>& response) {
   std::visit([&](const auto& law) { baseline::evaluate_law(law, point, response); }, material);
 }
 
@@ -56,8 +57,10 @@ void evaluate(const Material& material, InstructionSet set, Wanted wanted, const
       material);
 }
 
-void evaluate(const Material& material, const MaterialPoint<Lanes>& point, MaterialResponse<Lanes>& response) {
-  evaluate(material, has_avx2() ? InstructionSet::avx2 : InstructionSet::baseline, everything, point, response);
+void evaluate(const Material& material, const MaterialPoint<Lanes>& point,
+              MaterialResponse<Lanes>& response) {
+  evaluate(material, has_avx2() ? InstructionSet::avx2 : InstructionSet::baseline, everything, point,
+           response);
 }
 
 }  // namespace brachium::fem

@@ -53,8 +53,8 @@ void check_law(Check& c, const MuscleTendon& m) {
   check_tissue(c, "tendon", m.tendon);
   c.not_negative("max_stress_pa", m.max_stress_pa);
   const ForceLength& f = m.force_length;
-  c.require(f.optimal_stretch > 0.0 && f.optimal_stretch <= 10.0, "force_length.optimal_stretch", f.optimal_stretch,
-            "in (0, 10]");
+  c.require(f.optimal_stretch > 0.0 && f.optimal_stretch <= 10.0, "force_length.optimal_stretch",
+            f.optimal_stretch, "in (0, 10]");
   c.positive("force_length.ascending_width", f.ascending_width);
   c.between("force_length.ascending_exponent", f.ascending_exponent, 1.2, 10.0, "in [1.2, 10]");
   c.positive("force_length.descending_width", f.descending_width);
@@ -66,7 +66,9 @@ void check_law(Check& c, const MuscleTendon& m) {
   c.require(e > 1.0 && e <= 10.0, "force_velocity.eccentric_force", e, "in (1, 10]");
 }
 
-void check_law(Check& c, const NeoHooke& m) { c.positive("shear_modulus_pa", m.shear_modulus_pa); }
+void check_law(Check& c, const NeoHooke& m) {
+  c.positive("shear_modulus_pa", m.shear_modulus_pa);
+}
 
 void check_law(Check& c, const MooneyRivlin& m) {
   c.not_negative("c10_pa", m.c10_pa);
@@ -88,8 +90,8 @@ void check_law(Check& c, const BlemkerMuscle& m) {
   c.positive("passive_exponent", m.passive_exponent);
   c.positive("optimal_stretch", m.optimal_stretch);
   c.not_negative("max_stress_pa", m.max_stress_pa);
-  c.require(m.straightening_stretch > m.optimal_stretch && m.straightening_stretch <= 100.0, "straightening_stretch",
-            m.straightening_stretch, "above `optimal_stretch` and at most 100");
+  c.require(m.straightening_stretch > m.optimal_stretch && m.straightening_stretch <= 100.0,
+            "straightening_stretch", m.straightening_stretch, "above `optimal_stretch` and at most 100");
 }
 
 }  // namespace
