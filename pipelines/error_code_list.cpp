@@ -108,6 +108,13 @@ const std::vector<ErrorCode>& error_codes() {
        "The run was stopped from outside. Outputs that are complete are kept; run it again to go on."},
       {"left-out", "A part of the scene does not bear on any wanted quantity and was not modelled."},
       {"length-mismatch", "Signals that belong together have different numbers of samples."},
+      {"linear-order",
+       "A sparse solver was asked for a result before the step that it rests on: analyse, factorise, solve."},
+      {"linear-pattern",
+       "The pattern of a sparse matrix is not a lower triangle with its diagonal, column by column, rows "
+       "ascending."},
+      {"linear-size", "An array given to a sparse solver does not have the size that the matrix asks for."},
+      {"linear-value", "A sparse matrix has an entry that is not a number or infinite."},
       {"mesh-duplicate-cell", "Two cells of a mesh have the same corners. Remove one of each pair."},
       {"mesh-duplicate-name",
        "A name of a mesh stands for two regions or two surfaces, or a face stands twice in a surface. A name "
