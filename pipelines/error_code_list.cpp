@@ -78,7 +78,16 @@ const std::vector<ErrorCode>& error_codes() {
       {"damaged-data", "Stored samples do not agree with their checksum. Delete the file and run again."},
       {"damaged-file",
        "An HDF5 file is incomplete or damaged. Delete the file and run again, or copy it again."},
+      {"degenerate-cells",
+       "Cells of a mesh have no volume. Collapsed cells are not supported: remove them, or mesh with "
+       "tetrahedra there."},
       {"direction-disagreement", "Angle, velocity and torque of a dynamometer disagree in sign."},
+      {"disconnected-mesh",
+       "A mesh falls into parts that share no points. Merge coincident points where the parts should hold "
+       "together."},
+      {"distorted-cells",
+       "Cells of a mesh are too distorted: their Jacobian varies or their angles depart from right ones by "
+       "more than the limit. Smooth the mesh there, or change the limit knowingly."},
       {"duplicate-column", "A file has two columns of one name; a mapping could mean either."},
       {"duplicate-muscle", "Two muscles have one name. Muscles are known by their names; rename one."},
       {"duplicate-parameter", "A parameter is free twice: on its own and as part of a group."},
@@ -106,6 +115,9 @@ const std::vector<ErrorCode>& error_codes() {
        "The program broke down by itself. This is a defect of the program, not of your input."},
       {"interrupted",
        "The run was stopped from outside. Outputs that are complete are kept; run it again to go on."},
+      {"inverted-cells",
+       "Cells of a mesh are inverted: their volume is negative somewhere. All of them: the mesh is mirrored "
+       "or its nodes are in another order; some: mesh finer there, or straighten curved edges."},
       {"left-out", "A part of the scene does not bear on any wanted quantity and was not modelled."},
       {"length-mismatch", "Signals that belong together have different numbers of samples."},
       {"linear-order",
@@ -220,6 +232,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"size-mismatch", "Lists that belong together differ in length."},
       {"slack-muscle",
        "A muscle's tendon is slack over a part of the motion, so that it gives no force there."},
+      {"stretched-cells",
+       "Cells of a mesh are much longer in one direction than in another. Use more cells along it, or raise "
+       "the limit knowingly."},
       {"time-backwards", "Time stamps go backwards."},
       {"time-gap",
        "Samples are missing. Choose `timing = \"interpolate\"` in the session description to bridge them, "
@@ -276,6 +291,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"unset-variable", "A variable has no default and was given no value. Give it with --set NAME=VALUE."},
       {"unsupported-data-type", "A storage file holds other data than numbers."},
       {"unsupported-version", "A file states a version of its format that is not known here."},
+      {"unused-points",
+       "A mesh has points that belong to no cell; they would have no stiffness. Remove them."},
       {"weak-combination", "The data determine only a combination of parameters, not each of them."},
       {"write-failed",
        "A file could not be written: a full disk, a limit or missing permission. What was there before is "

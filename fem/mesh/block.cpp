@@ -24,11 +24,11 @@ data::Mesh block(const BlockOptions& options) {
     region_of_column.insert(region_of_column.end(), part.size() - 1, static_cast<int>(known));
   }
   names.region = [&](auto tag, int) { return region_of_column[static_cast<std::size_t>(tag[0])]; };
-  names.first = [](auto, int) { return "z0"; };
-  names.last = [](auto, int) { return "z1"; };
+  names.first = [](auto, int) { return std::vector<std::string>{"z0"}; };
+  names.last = [](auto, int) { return std::vector<std::string>{"z1"}; };
   names.side = [](auto, int edge, int) {
     constexpr const char* sides[4] = {"y0", "x1", "y1", "x0"};
-    return sides[edge];
+    return std::vector<std::string>{sides[edge]};
   };
   const Section section = grid_section(x, positions(options.y, "block: y"));
   const Eigen::Vector3d corner = options.corner_m;

@@ -167,11 +167,12 @@ data::Mesh sweep(const Section& section, const std::vector<double>& w,
 
   std::vector<int> region_number(names.regions.size(), -1);
   std::map<std::string, std::size_t> surface_number;
-  const auto add_face = [&](const std::string& name, int cell, int face) {
-    if (name.empty()) return;
-    const auto [found, is_new] = surface_number.try_emplace(name, mesh.surfaces.size());
-    if (is_new) mesh.surfaces.push_back({name, {}});
-    mesh.surfaces[found->second].faces.push_back({cell, face});
+  const auto add_face = [&](const std::vector<std::string>& face_names, int cell, int face) {
+    for (const std::string& name : face_names) {
+      const auto [found, is_new] = surface_number.try_emplace(name, mesh.surfaces.size());
+      if (is_new) mesh.surfaces.push_back({name, {}});
+      mesh.surfaces[found->second].faces.push_back({cell, face});
+    }
   };
   // Nodes 0..26 of a hexahedron: layer (0 bottom, 1 middle, 2 top) and node of the quadrilateral.
   constexpr int level_of[27] = {0, 0, 0, 0, 2, 2, 2, 2, 0, 0, 0, 0, 2, 2,

@@ -33,13 +33,13 @@ Section grid_section(const std::vector<double>& u, const std::vector<double>& v,
 ///   ring_radii: outer radius of each ring, rising, the last 1; the core's corners lie at core_radius
 Section disk_section(int core_cells, const std::vector<double>& ring_radii, double core_radius = 0.55);
 
-/// What a swept cell and its outer faces are called. An empty name: not part of a surface.
+/// What a swept cell and its outer faces are called; a face can be part of several surfaces, or of none.
 struct SweepNames {
   std::function<int(std::array<int, 2> tag, int layer)> region;  ///< index into `regions`
   std::vector<std::string> regions;
-  std::function<std::string(std::array<int, 2> tag, int layer)> first;  ///< faces at the first w
-  std::function<std::string(std::array<int, 2> tag, int layer)> last;   ///< faces at the last w
-  std::function<std::string(std::array<int, 2> tag, int edge, int layer)>
+  std::function<std::vector<std::string>(std::array<int, 2> tag, int layer)> first;  ///< faces at the first w
+  std::function<std::vector<std::string>(std::array<int, 2> tag, int layer)> last;   ///< faces at the last w
+  std::function<std::vector<std::string>(std::array<int, 2> tag, int edge, int layer)>
       side;  ///< outer edge 0-3 of the section
 };
 
