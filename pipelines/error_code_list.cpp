@@ -267,6 +267,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"unknown-normalisation", "There is no such normalisation."},
       {"unknown-onset-method", "There is no such method of onset detection."},
       {"unknown-parameter", "There is no such parameter of a muscle."},
+      {"unknown-parameter-set",
+       "There is no published set of material parameters of that name; the message gives the nearest."},
       {"unknown-phase", "A filter is either zero-lag or causal."},
       {"unknown-programme", "The synthetic twin knows no such movement."},
       {"unknown-quantity", "There is no such physical quantity."},

@@ -34,8 +34,7 @@ struct ForceLength {
 /// lengthening positive:
 ///   v <= -1      f_v = 0
 ///   -1 < v <= 0  f_v = (1 + v)/(1 - v/k)                    Hill 1938, doi:10.1098/rspb.1938.0050, k = a/F0
-///   v > 0        f_v = 1 + (e - 1) v/(v + (e - 1)/s)        s = 1 + 1/k, the slope from the left: f_v is
-///   smooth at 0
+///   v > 0        f_v = 1 + (e - 1) v/(v + (e - 1)/s)        s = 1 + 1/k, the slope from the left
 /// The eccentric branch is a hyperbola that tends to e, as in van Soest & Bobbert 1993,
 /// doi:10.1007/BF00198959, who make its slope at 0 twice the concentric one; here the slope is continuous, so
 /// that Newton's tangent is.

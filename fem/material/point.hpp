@@ -2,24 +2,23 @@
 /// What a material law is asked at one quadrature point, and what it answers. T is double, or `Lanes`, which
 /// hold the same point of four cells (fem/material/lanes.inc).
 ///
-/// Symmetric tensors have six components in the order 11 22 33 12 23 13 (tensor components, no factors of
-/// two).
+/// Symmetric tensors have six components in the order 11 22 33 12 23 13 (tensor components, no factors of 2).
 ///
-/// | symbol   | identifier      | unit | meaning |
-/// |----------|-----------------|------|---------------------------------------------------------------------------|
-/// | C        | C               | 1    | right Cauchy-Green tensor F'F | | a0       | fibre           | 1 |
-/// unit fibre direction, reference placement                                 | | alpha    | activation      |
-/// 1    | in [0, 1]                                                                 | | gamma_M  | muscle | 1
-/// | 1 muscle, 0 tendon                                                        | | gamma_ST | soft_tissue | 1
-/// | 1 fat or other isotropic tissue, 0 fibres                                 | | lambda_n | stretch_before
-/// | 1    | fibre stretch at the last accepted state                                  | | 1/dt     |
-/// inverse_dt      | 1/s  | 0: no rate dependence                                                     | | W
-/// | energy          | J/m3 | stored energy per reference volume, without the volumetric part           | | S
-/// | S               | Pa   | second Piola-Kirchhoff stress 2 dW/dC                                     | |
-/// CC       | CC              | Pa   | 2 dS/dC, upper triangle by rows: (0,0) (0,1) .. (0,5) (1,1) .. (5,5) |
+/// | symbol   | identifier     | unit | meaning                                                             |
+/// |----------|----------------|------|---------------------------------------------------------------------|
+/// | C        | C              | 1    | right Cauchy-Green tensor F'F                                       |
+/// | a0       | fibre          | 1    | unit fibre direction, reference placement                           |
+/// | alpha    | activation     | 1    | in [0, 1]                                                           |
+/// | gamma_M  | muscle         | 1    | 1 muscle, 0 tendon                                                  |
+/// | gamma_ST | soft_tissue    | 1    | 1 fat or other isotropic tissue, 0 fibres                           |
+/// | lambda_n | stretch_before | 1    | fibre stretch at the last accepted state                            |
+/// | 1/dt     | inverse_dt     | 1/s  | 0: no rate dependence                                               |
+/// | W        | energy         | J/m3 | stored energy per reference volume, without the volumetric part     |
+/// | S        | S              | Pa   | second Piola-Kirchhoff stress 2 dW/dC                               |
+/// | CC       | CC             | Pa   | 2 dS/dC, upper triangle by rows: (0,0) (0,1) .. (0,5) (1,1) .. (5,5)
+/// |
 ///
-/// CC_(ij)(kl) are tensor components as well: dS_ij = CC_ijkl dE_kl summed over all nine (k, l), E = (C -
-/// 1)/2.
+/// CC_(ij)(kl) are tensor components too: dS_ij = sum over all nine (k, l) of CC_ijkl dE_kl, E = (C - 1)/2.
 
 namespace brachium::fem {
 

@@ -2,6 +2,7 @@
 /// Every law and option, for the properties that all of them share.
 
 #include <Eigen/Dense>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,11 @@ inline std::vector<Case> all_cases() {
   cases.push_back({"blemker", b, 0, 1, 0, 0, 1, true});
   cases.push_back({"blemker_active", b, 0.6, 1, 0, 0, 1, true});
   return cases;
+}
+
+/// For messages of the test program.
+inline void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
 }
 
 inline Matrix3d tensor(const double s[6]) {

@@ -147,8 +147,9 @@ TEST_P(Law, DifferencesOfTheStressAreSymmetric) {
   EXPECT_NEAR(ab, ba, 1e-8 * scale(respond(GetParam(), C, a0)));
 }
 
-TEST_P(Law, DoesNotSeeAChangeOfVolumeIfIsochoric) {
-  if (!GetParam().isochoric) GTEST_SKIP() << "not an isochoric law";
+class IsochoricLaw : public Law {};
+
+TEST_P(IsochoricLaw, DoesNotSeeAChangeOfVolume) {
   const Matrix3d C = gradients()[0].transpose() * gradients()[0];
   const auto r = respond(GetParam(), C, directions()[1]);
   const auto s = respond(GetParam(), 1.7 * C, directions()[1]);
@@ -236,8 +237,20 @@ TEST_P(Law, PartsNotWantedDoNotChangeTheOthers) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Law, testing::ValuesIn(all_cases()),
-                         [](const auto& instance) { return instance.param.name; });
+std::vector<Case> isochoric_cases() {
+  std::vector<Case> cases;
+  for (const Case& c : all_cases()) {
+    if (c.isochoric) cases.push_back(c);
+  }
+  return cases;
+}
+
+std::string name_of(const testing::TestParamInfo<Case>& instance) {
+  return instance.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Law, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(All, IsochoricLaw, testing::ValuesIn(isochoric_cases()), name_of);
 
 }  // namespace
 }  // namespace brachium::fem::test
