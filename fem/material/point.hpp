@@ -15,8 +15,7 @@
 /// | 1/dt     | inverse_dt     | 1/s  | 0: no rate dependence                                               |
 /// | W        | energy         | J/m3 | stored energy per reference volume, without the volumetric part     |
 /// | S        | S              | Pa   | second Piola-Kirchhoff stress 2 dW/dC                               |
-/// | CC       | CC             | Pa   | 2 dS/dC, upper triangle by rows: (0,0) (0,1) .. (0,5) (1,1) .. (5,5)
-/// |
+/// | CC       | CC             | Pa   | 2 dS/dC, upper triangle by rows, entry (i, j) at upper(i, j)        |
 ///
 /// CC_(ij)(kl) are tensor components too: dS_ij = sum over all nine (k, l) of CC_ijkl dE_kl, E = (C - 1)/2.
 
