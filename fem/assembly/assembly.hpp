@@ -5,16 +5,17 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fem/assembly/discretisation.hpp"
+#include "fem/assembly/unknowns.hpp"
 #include "fem/fibre/field.hpp"
-#include "fem/linear/symmetric_solver.hpp"
 #include "fem/material/material.hpp"
 
 namespace brachium::fem {
 
-/// What the interior of the body depends on. Vectors by dof (assembly/discretisation.hpp), in global axes.
+/// What the interior of the body depends on. Vectors by dof, global axes (fem/assembly/unknowns.hpp).
 struct Configuration {
   Eigen::VectorXd dofs;              ///< dof_count: displacements [m], continuous pressures [Pa] (tension positive)
   Eigen::VectorXd activation;        ///< by region, [0, 1]
@@ -34,20 +35,9 @@ struct Assembled {
   double energy = 0.0;         ///< J, stored and volumetric (without loads)
   double volume = 0.0;         ///< m3, deformed
   double worst_volume = 0.0;   ///< max over cells and points of |theta - 1| (discontinuous) or of |J - 1|
-  double cell_force_norm = 0.0;  ///< N, sqrt(sum over cells of |f_cell|^2): internal forces before they cancel at nodes
   double smallest_jacobian = 1.0;
   int smallest_jacobian_cell = -1;
   std::optional<AssemblyFailure> failure;  ///< then nothing else is valid
-};
-
-/// Free unknowns, frames of nodes, and the pattern of the tangent over them; one per set of constraints.
-struct Unknowns {
-  std::vector<int> unknown_of_dof;     ///< -1: held
-  std::vector<int> dof_of_unknown;
-  std::vector<int> block_of_unknown;   ///< unknowns of one node share a block
-  SymmetricPattern pattern;
-  Eigen::Matrix3Xd frames;             ///< empty, or 3 x 3 n_nodes: columns are the axes of a node's dofs
-  int count() const { return static_cast<int>(dof_of_unknown.size()); }
 };
 
 class Assembly {
@@ -58,15 +48,15 @@ class Assembly {
   ~Assembly();
 
   const Discretisation& discretisation() const;
+  const std::vector<RegionMaterial>& materials() const;
+  const TissueField& tissue() const;
+  std::string kernel() const;  ///< which instruction set the element loops use
 
-  /// Numbers the dofs that are not held and finds the tangent's pattern. `held`: by dof; `frames` may be empty.
-  Unknowns number(const std::vector<char>& held, const Eigen::Matrix3Xd& frames) const;
-
-  /// Internal forces by dof (global axes): residual = dW/du - 0. Size dof_count.
+  /// Derivative of the energy by dof, global axes: internal forces [N], and of continuous pressures the constraint
+  /// int phi (J - 1 - p / k) [m3]. Size dof_count.
   Assembled residual(const Configuration& configuration, Eigen::VectorXd& force) const;
 
-  /// Residual (by dof, global axes) and tangent: values on unknowns.pattern (lower triangle), rows and columns of a node
-  /// in its frame. The tangent of internal forces only.
+  /// The same, and its tangent: values on unknowns.pattern, in the axes of the nodes.
   Assembled tangent(const Configuration& configuration, const Unknowns& unknowns, Eigen::VectorXd& force,
                     std::vector<double>& values) const;
 

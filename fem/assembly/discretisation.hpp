@@ -1,14 +1,9 @@
 #pragma once
-/// What of a problem does not change while it is solved: nodes (of the mesh, and bubbles), unknowns, quadrature
-/// geometry, batches of four cells that run in vector lanes, colours in which batches do not share nodes.
-///
-/// All displacement degrees of freedom are numbered 3 node + component ("dof"); those that no constraint holds are
-/// unknowns. Continuous pressures follow as dofs 3 n_nodes + vertex.
-///
-/// Frames: a node on an oblique symmetry plane has its own axes; its unknowns and its rows of the tangent are components
-/// in them. Vectors by dof are in global axes throughout.
+/// What of a problem does not change while it is solved: nodes (points of the mesh, and bubbles), pressures, quadrature
+/// geometry.
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -40,6 +35,8 @@ class Discretisation {
   void reference_gradients(int cell, int q, Eigen::MatrixX3d& gradient, double& weight) const;
   /// Reference position of a quadrature point.
   Eigen::Vector3d position(int cell, int q) const;
+  /// Values of the nodes' shape functions, nodes_per_cell x n_q.
+  const Eigen::MatrixXd& shape_values() const { return local_values_; }
   double volume() const { return volume_; }  ///< of the reference mesh [m3]
 
  private:
