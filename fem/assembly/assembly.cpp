@@ -17,7 +17,7 @@ namespace {
 
 /// A batch's share of the sums over the mesh.
 struct BatchSums {
-  double energy = 0.0, volume = 0.0, worst_volume = 0.0;
+  double energy = 0.0, volume = 0.0, worst_volume = 0.0, force_squared = 0.0;
   double smallest_jacobian = std::numeric_limits<double>::infinity();
   int cell = -1;  ///< of the smallest Jacobian
   bool valid = true;
@@ -26,12 +26,14 @@ struct BatchSums {
 /// One cell's tangent, from its lane, brought to the axes of its nodes and added to the values.
 class TangentScatter {
  public:
-  TangentScatter(const Discretisation& d, const Unknowns& unknowns, double* values) : d_(d), unknowns_(unknowns), values_(values) {}
+  TangentScatter(const Discretisation& d, const Unknowns& unknowns, double* values)
+      : d_(d), unknowns_(unknowns), values_(values) {}
 
   void add(int cell, int lane, const Workspace& w) const {
     const int nodes = d_.nodes_per_cell();
     const int pressures = d_.pressure_node_count() > 0 ? d_.pressures_per_cell() : 0;
-    const int* to = unknowns_.scatter.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(unknowns_.entries_per_cell);
+    const int* to = unknowns_.scatter.data() +
+                    static_cast<std::size_t>(cell) * static_cast<std::size_t>(unknowns_.entries_per_cell);
     if (has_framed_node(cell)) {
       add_rotated(cell, lane, w, to);
       return;
@@ -61,7 +63,8 @@ class TangentScatter {
   void add_pressures(int lane, const Workspace& w, int pressures, const int* to) const {
     for (int m = 0; m < pressures; ++m) {
       for (int l = 0; l <= m; ++l, ++to) {
-        if (*to >= 0) values_[*to] -= w.constraint_mass[static_cast<std::size_t>(m * pressures + l)].lane[lane];
+        if (*to >= 0)
+          values_[*to] -= w.constraint_mass[static_cast<std::size_t>(m * pressures + l)].lane[lane];
       }
     }
   }
@@ -69,7 +72,9 @@ class TangentScatter {
   void add_rotated(int cell, int lane, const Workspace& w, const int* to) const {
     const int nodes = d_.nodes_per_cell();
     const int pressures = d_.pressure_node_count() > 0 ? d_.pressures_per_cell() : 0;
-    const auto axes = [&](int a) -> Eigen::Matrix3d { return unknowns_.frames.middleCols<3>(3 * d_.nodes_of_cell()(a, cell)); };
+    const auto axes = [&](int a) -> Eigen::Matrix3d {
+      return unknowns_.frames.middleCols<3>(3 * d_.nodes_of_cell()(a, cell));
+    };
     const LaneBlock* from = w.tangent.data();
     for (int a = 0; a < nodes; ++a) {
       for (int b = 0; b <= a; ++b, from += 9, to += 9) {
@@ -88,7 +93,8 @@ class TangentScatter {
     from = w.coupling.data();
     for (int m = 0; m < pressures; ++m) {
       for (int b = 0; b < nodes; ++b, from += 3, to += 3) {
-        const Eigen::Vector3d turned = axes(b).transpose() * Eigen::Vector3d(from[0].lane[lane], from[1].lane[lane], from[2].lane[lane]);
+        const Eigen::Vector3d turned =
+            axes(b).transpose() * Eigen::Vector3d(from[0].lane[lane], from[1].lane[lane], from[2].lane[lane]);
         for (int k = 0; k < 3; ++k) {
           if (to[k] >= 0) values_[to[k]] += turned[k];
         }
@@ -114,8 +120,10 @@ struct Assembly::Impl {
   Batches batches;
 
   void gather(const Configuration& c, std::size_t batch, Workspace& w) const;
-  BatchSums run(const Configuration& c, std::size_t batch, Workspace& w, bool with_tangent, KernelOutput& out) const;
-  Assembled loop(const Configuration& c, const Unknowns* unknowns, Eigen::VectorXd* force, std::vector<double>* values, Eigen::MatrixXd* pressures) const;
+  BatchSums run(const Configuration& c, std::size_t batch, Workspace& w, Wanted wanted,
+                KernelOutput& out) const;
+  Assembled loop(const Configuration& c, Wanted wanted, const Unknowns* unknowns, Eigen::VectorXd* force,
+                 std::vector<double>* values, Eigen::MatrixXd* pressures) const;
 };
 
 void Assembly::Impl::gather(const Configuration& c, std::size_t batch, Workspace& w) const {
@@ -128,7 +136,8 @@ void Assembly::Impl::gather(const Configuration& c, std::size_t batch, Workspace
       const int dof = 3 * d.nodes_of_cell()(a, cell);
       for (int i = 0; i < 3; ++i) {
         w.displacement[static_cast<std::size_t>(3 * a + i)].lane[l] = c.dofs[dof + i];
-        if (c.dofs_before.size() > 0) w.displacement_before[static_cast<std::size_t>(3 * a + i)].lane[l] = c.dofs_before[dof + i];
+        if (c.dofs_before.size() > 0)
+          w.displacement_before[static_cast<std::size_t>(3 * a + i)].lane[l] = c.dofs_before[dof + i];
       }
     }
     for (int m = 0; m < pressures; ++m) {
@@ -143,7 +152,8 @@ void Assembly::Impl::gather(const Configuration& c, std::size_t batch, Workspace
   }
 }
 
-BatchSums Assembly::Impl::run(const Configuration& c, std::size_t batch, Workspace& w, bool with_tangent, KernelOutput& out) const {
+BatchSums Assembly::Impl::run(const Configuration& c, std::size_t batch, Workspace& w, Wanted wanted,
+                              KernelOutput& out) const {
   const Discretisation& d = *discretisation;
   gather(c, batch, w);
   const auto region = static_cast<std::size_t>(batches.region[batch]);
@@ -156,7 +166,8 @@ BatchSums Assembly::Impl::run(const Configuration& c, std::size_t batch, Workspa
   in.viscosity = c.viscosity_pa_s;
   in.material = &materials[region].material;
   in.volume = volumes[region];
-  out = w.output(with_tangent, d.pressures_per_cell() > 0);
+  out = w.output(wanted == with_tangent, d.pressures_per_cell() > 0);
+  out.with_energy = wanted == with_energy;
   kernel(in, out);
 
   BatchSums sums;
@@ -177,7 +188,8 @@ BatchSums Assembly::Impl::run(const Configuration& c, std::size_t batch, Workspa
     sums.volume += out.volume.lane[l];
     sums.worst_volume = std::max(sums.worst_volume, out.worst_volume.lane[l]);
     double force = 0.0;
-    for (int a = 0; a < 3 * d.nodes_per_cell(); ++a) force += std::abs(out.force[a].lane[l]);
+    for (int a = 0; a < 3 * d.nodes_per_cell(); ++a) force += out.force[a].lane[l] * out.force[a].lane[l];
+    sums.force_squared += force;
     if (!std::isfinite(out.energy.lane[l]) || !std::isfinite(force)) {
       sums.valid = false;
       sums.cell = batches.cell[batch][static_cast<std::size_t>(l)];
@@ -187,7 +199,9 @@ BatchSums Assembly::Impl::run(const Configuration& c, std::size_t batch, Workspa
   return sums;
 }
 
-Assembled Assembly::Impl::loop(const Configuration& c, const Unknowns* unknowns, Eigen::VectorXd* force, std::vector<double>* values, Eigen::MatrixXd* pressures) const {
+Assembled Assembly::Impl::loop(const Configuration& c, Wanted wanted, const Unknowns* unknowns,
+                               Eigen::VectorXd* force, std::vector<double>* values,
+                               Eigen::MatrixXd* pressures) const {
   const Discretisation& d = *discretisation;
   const int nodes = d.nodes_per_cell(), per_cell = d.pressures_per_cell();
   const bool continuous = d.pressure_node_count() > 0;
@@ -197,7 +211,8 @@ Assembled Assembly::Impl::loop(const Configuration& c, const Unknowns* unknowns,
   if (values) scatter.emplace(d, *unknowns, values->data());
   std::vector<BatchSums> sums(batches.size());
 
-  const std::size_t workers = std::min(data::thread_count(threads), std::max<std::size_t>(1, batches.size() / 2));
+  const std::size_t workers =
+      std::min(data::thread_count(threads), std::max<std::size_t>(1, batches.size() / 2));
   std::vector<std::atomic<std::size_t>> next(batches.colours.size());
   std::barrier barrier(static_cast<std::ptrdiff_t>(workers));
   data::parallel_for(workers, workers, [&](std::size_t) {
@@ -207,7 +222,7 @@ Assembled Assembly::Impl::loop(const Configuration& c, const Unknowns* unknowns,
       const std::vector<std::size_t>& list = batches.colours[colour];
       for (std::size_t i = next[colour]++; i < list.size(); i = next[colour]++) {
         const std::size_t batch = list[i];
-        sums[batch] = run(c, batch, workspace, values != nullptr, out);
+        sums[batch] = run(c, batch, workspace, wanted, out);
         if (!sums[batch].valid) continue;
         for (int l = 0; l < batches.count[batch]; ++l) {
           const int cell = batches.cell[batch][static_cast<std::size_t>(l)];
@@ -216,7 +231,8 @@ Assembled Assembly::Impl::loop(const Configuration& c, const Unknowns* unknowns,
               const int dof = 3 * d.nodes_of_cell()(a, cell);
               for (int k = 0; k < 3; ++k) (*force)[dof + k] += out.force[3 * a + k].lane[l];
             }
-            for (int m = 0; continuous && m < per_cell; ++m) (*force)[3 * d.node_count() + d.pressure_nodes_of_cell()(m, cell)] += out.constraint[m].lane[l];
+            for (int m = 0; continuous && m < per_cell; ++m)
+              (*force)[3 * d.node_count() + d.pressure_nodes_of_cell()(m, cell)] += out.constraint[m].lane[l];
           }
           if (pressures) {
             for (int m = 0; m < per_cell; ++m) (*pressures)(m, cell) = out.cell_pressure[m].lane[l];
@@ -230,25 +246,34 @@ Assembled Assembly::Impl::loop(const Configuration& c, const Unknowns* unknowns,
 
   Assembled total;
   total.smallest_jacobian = std::numeric_limits<double>::infinity();
+  double energy = 0.0, force_squared = 0.0;
   for (const BatchSums& s : sums) {
     if (!s.valid && !total.failure) total.failure = AssemblyFailure{s.cell, s.smallest_jacobian};
-    if (!s.valid && s.smallest_jacobian < total.failure->jacobian) total.failure = AssemblyFailure{s.cell, s.smallest_jacobian};
-    total.energy += s.energy;
+    if (!s.valid && s.smallest_jacobian < total.failure->jacobian)
+      total.failure = AssemblyFailure{s.cell, s.smallest_jacobian};
+    energy += s.energy;
     total.volume += s.volume;
+    force_squared += s.force_squared;
     total.worst_volume = std::max(total.worst_volume, s.worst_volume);
     if (s.smallest_jacobian < total.smallest_jacobian) {
       total.smallest_jacobian = s.smallest_jacobian;
       total.smallest_jacobian_cell = s.cell;
     }
   }
+  total.cell_force_norm = std::sqrt(force_squared);
+  if (wanted == with_energy) total.energy = energy;
   return total;
 }
 
-Assembly::Assembly(std::shared_ptr<const Discretisation> discretisation, std::vector<RegionMaterial> materials, TissueField tissue, double penalty_pa, std::size_t threads)
+Assembly::Assembly(std::shared_ptr<const Discretisation> discretisation,
+                   std::vector<RegionMaterial> materials, TissueField tissue, double penalty_pa,
+                   std::size_t threads)
     : impl_(std::make_unique<Impl>()) {
   const Discretisation& d = *discretisation;
   if (materials.size() != d.mesh().regions.size()) {
-    throw data::InputError("missing-material", fmt::format("{} materials were given for {} regions of the mesh", materials.size(), d.mesh().regions.size()),
+    throw data::InputError("missing-material",
+                           fmt::format("{} materials were given for {} regions of the mesh", materials.size(),
+                                       d.mesh().regions.size()),
                            "every region needs its own");
   }
   const PressureSpace space = pressure_space(d.formulation());
@@ -256,7 +281,10 @@ Assembly::Assembly(std::shared_ptr<const Discretisation> discretisation, std::ve
     check(materials[r].material);
     const Volumetric& v = materials[r].volumetric;
     if (!(v.bulk_modulus_pa > 0.0)) {
-      throw data::InputError("parameter-range", fmt::format("bulk modulus of region `{}` is {} Pa", d.mesh().regions[r], v.bulk_modulus_pa), "it must be above 0, or infinite");
+      throw data::InputError(
+          "parameter-range",
+          fmt::format("bulk modulus of region `{}` is {} Pa", d.mesh().regions[r], v.bulk_modulus_pa),
+          "it must be above 0, or infinite");
     }
     KernelVolume volume;
     volume.law = v.law;
@@ -264,19 +292,35 @@ Assembly::Assembly(std::shared_ptr<const Discretisation> discretisation, std::ve
     switch (space) {
       case PressureSpace::none:
         volume.pressure = KernelVolume::Pressure::none;
+        volume.modulus = v.bulk_modulus_pa;
+        if (infinite) {
+          throw data::InputError(
+              "incompressible-displacement",
+              fmt::format("region `{}` is incompressible, element `{}` has displacements only",
+                          d.mesh().regions[r], to_string(d.formulation())),
+              "give a finite bulk modulus, or choose an element with a pressure");
+        }
         break;
       case PressureSpace::continuous:
         volume.pressure = KernelVolume::Pressure::continuous;
         volume.inverse_modulus = infinite ? 0.0 : 1.0 / v.bulk_modulus_pa;
         if (!infinite && v.law != VolumetricLaw::quadratic) {
-          throw data::InputError("volumetric-law", fmt::format("region `{}` has a finite bulk modulus with a law that `{}` does not offer", d.mesh().regions[r], to_string(d.formulation())),
-                                 "continuous pressures take the quadratic law k/2 (J - 1)^2; choose it, a condensed element, or an infinite bulk modulus");
+          throw data::InputError(
+              "volumetric-law",
+              fmt::format("region `{}` has a finite bulk modulus with a law that `{}` does not offer",
+                          d.mesh().regions[r], to_string(d.formulation())),
+              "continuous pressures take the quadratic law k/2 (J - 1)^2; choose it, a condensed element, or "
+              "an infinite bulk modulus");
         }
         break;
       default:
         volume.pressure = KernelVolume::Pressure::discontinuous;
         volume.modulus = infinite ? penalty_pa : v.bulk_modulus_pa;
-        if (infinite && !(penalty_pa > 0.0)) throw data::InputError("parameter-range", fmt::format("penalty of the augmented Lagrange iteration is {} Pa", penalty_pa), "it must be above 0");
+        if (infinite && !(penalty_pa > 0.0))
+          throw data::InputError(
+              "parameter-range",
+              fmt::format("penalty of the augmented Lagrange iteration is {} Pa", penalty_pa),
+              "it must be above 0");
     }
     impl_->volumes.push_back(volume);
   }
@@ -290,22 +334,33 @@ Assembly::Assembly(std::shared_ptr<const Discretisation> discretisation, std::ve
 
 Assembly::~Assembly() = default;
 
-const Discretisation& Assembly::discretisation() const { return *impl_->discretisation; }
-const std::vector<RegionMaterial>& Assembly::materials() const { return impl_->materials; }
-const TissueField& Assembly::tissue() const { return impl_->tissue; }
-std::string Assembly::kernel() const { return kernel_name(impl_->kernel); }
+const Discretisation& Assembly::discretisation() const {
+  return *impl_->discretisation;
+}
+const std::vector<RegionMaterial>& Assembly::materials() const {
+  return impl_->materials;
+}
+const TissueField& Assembly::tissue() const {
+  return impl_->tissue;
+}
+std::string Assembly::kernel() const {
+  return kernel_name(impl_->kernel);
+}
 
-Assembled Assembly::residual(const Configuration& configuration, Eigen::VectorXd& force) const { return impl_->loop(configuration, nullptr, &force, nullptr, nullptr); }
+Assembled Assembly::residual(const Configuration& configuration, Eigen::VectorXd& force, bool energy) const {
+  return impl_->loop(configuration, energy ? with_energy : stress_only, nullptr, &force, nullptr, nullptr);
+}
 
-Assembled Assembly::tangent(const Configuration& configuration, const Unknowns& unknowns, Eigen::VectorXd& force, std::vector<double>& values) const {
-  return impl_->loop(configuration, &unknowns, &force, &values, nullptr);
+Assembled Assembly::tangent(const Configuration& configuration, const Unknowns& unknowns,
+                            Eigen::VectorXd& force, std::vector<double>& values) const {
+  return impl_->loop(configuration, with_tangent, &unknowns, &force, &values, nullptr);
 }
 
 Eigen::MatrixXd Assembly::pressures(const Configuration& configuration) const {
   const Discretisation& d = *impl_->discretisation;
   if (pressure_space(d.formulation()) == PressureSpace::continuous || d.pressures_per_cell() == 0) return {};
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(d.pressures_per_cell(), d.cell_count());
-  impl_->loop(configuration, nullptr, nullptr, nullptr, &result);
+  impl_->loop(configuration, stress_only, nullptr, nullptr, nullptr, &result);
   return result;
 }
 

@@ -15,8 +15,10 @@ void check_tissue(const Discretisation& d, const TissueField& tissue) {
   const Eigen::Index points = static_cast<Eigen::Index>(d.cell_count()) * d.quadrature().size();
   const auto size = [&](Eigen::Index given, const char* what) {
     if (given == 0 || given == points) return;
-    throw data::InputError("fibre-field-size", fmt::format("{} has {} values, the mesh has {} quadrature points", what, given, points),
-                           "make the field for the same element that is solved with");
+    throw data::InputError(
+        "fibre-field-size",
+        fmt::format("{} has {} values, the mesh has {} quadrature points", what, given, points),
+        "make the field for the same element that is solved with");
   };
   size(tissue.fibre.cols(), "the fibre field");
   size(tissue.muscle.size(), "the share of muscle");
@@ -25,13 +27,19 @@ void check_tissue(const Discretisation& d, const TissueField& tissue) {
   for (Eigen::Index i = 0; i < tissue.fibre.cols(); ++i) {
     const double norm = tissue.fibre.col(i).norm();
     if (!(std::abs(norm - 1.0) < 1e-6)) {
-      throw data::InputError("zero-fibre", fmt::format("the fibre at quadrature point {} of cell {} has length {:.6g}", i % n_q, i / n_q, norm), "fibres are unit vectors");
+      throw data::InputError("zero-fibre",
+                             fmt::format("the fibre at quadrature point {} of cell {} has length {:.6g}",
+                                         i % n_q, i / n_q, norm),
+                             "fibres are unit vectors");
     }
   }
   const auto share = [&](const Eigen::VectorXd& values, const char* what) {
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       if (values[i] >= 0.0 && values[i] <= 1.0) continue;
-      throw data::InputError("blending-range", fmt::format("{} is {} at quadrature point {} of cell {}", what, values[i], i % n_q, i / n_q), "it lies in [0, 1]");
+      throw data::InputError(
+          "blending-range",
+          fmt::format("{} is {} at quadrature point {} of cell {}", what, values[i], i % n_q, i / n_q),
+          "it lies in [0, 1]");
     }
   };
   share(tissue.muscle, "the share of muscle");
@@ -46,7 +54,9 @@ std::vector<std::vector<std::size_t>> colour(const Discretisation& d, const Batc
     const auto free = [&](std::size_t c) {
       for (int l = 0; l < batches.count[b]; ++l) {
         for (int a = 0; a < d.nodes_per_cell(); ++a) {
-          if (taken[c][static_cast<std::size_t>(d.nodes_of_cell()(a, batches.cell[b][static_cast<std::size_t>(l)]))]) return false;
+          if (taken[c][static_cast<std::size_t>(
+                  d.nodes_of_cell()(a, batches.cell[b][static_cast<std::size_t>(l)]))])
+            return false;
         }
       }
       return true;
@@ -59,14 +69,17 @@ std::vector<std::vector<std::size_t>> colour(const Discretisation& d, const Batc
     }
     colours[c].push_back(b);
     for (int l = 0; l < batches.count[b]; ++l) {
-      for (int a = 0; a < d.nodes_per_cell(); ++a) taken[c][static_cast<std::size_t>(d.nodes_of_cell()(a, batches.cell[b][static_cast<std::size_t>(l)]))] = 1;
+      for (int a = 0; a < d.nodes_per_cell(); ++a)
+        taken[c]
+             [static_cast<std::size_t>(d.nodes_of_cell()(a, batches.cell[b][static_cast<std::size_t>(l)]))] =
+                 1;
     }
   }
   return colours;
 }
 
-/// Pressure functions 1, (X - X_c) / h of a cell: linear in physical coordinates (mapped ones lose order on distorted
-/// cells; Boffi & Gastaldi 2002, doi:10.1007/s002110100382).
+/// Pressure functions 1, (X - X_c) / h of a cell: linear in physical coordinates (mapped ones lose order on
+/// distorted cells; Boffi & Gastaldi 2002, doi:10.1007/s002110100382).
 Eigen::MatrixXd discontinuous_shapes(const Discretisation& d, int cell) {
   const int n_q = d.quadrature().size(), p = d.pressures_per_cell();
   Eigen::MatrixXd phi(p, n_q);
@@ -88,7 +101,8 @@ KernelInput Batches::input(std::size_t b) const {
   in.padded_nodes = padded_nodes;
   in.points = points;
   in.pressures = pressures;
-  const auto q = static_cast<std::size_t>(points), p = static_cast<std::size_t>(pressures), n = static_cast<std::size_t>(padded_nodes);
+  const auto q = static_cast<std::size_t>(points), p = static_cast<std::size_t>(pressures),
+             n = static_cast<std::size_t>(padded_nodes);
   in.gradient = gradient.data() + b * q * n * 3;
   in.weight = weight.data() + b * q;
   in.fibre = fibre.data() + b * q * 3;
@@ -158,21 +172,37 @@ Batches make_batches(const Discretisation& d, const TissueField& tissue) {
         const Eigen::Index column = static_cast<Eigen::Index>(cell) * n_q + q;
         batches.weight[at].lane[l] = weight;
         for (int a = 0; a < nodes; ++a) {
-          for (int j = 0; j < 3; ++j) batches.gradient[(at * static_cast<std::size_t>(batches.padded_nodes) + static_cast<std::size_t>(a)) * 3 + static_cast<std::size_t>(j)].lane[l] = gradient(a, j);
+          for (int j = 0; j < 3; ++j)
+            batches
+                .gradient[(at * static_cast<std::size_t>(batches.padded_nodes) +
+                           static_cast<std::size_t>(a)) *
+                              3 +
+                          static_cast<std::size_t>(j)]
+                .lane[l] = gradient(a, j);
         }
         // Laws without fibres never look at the direction; a unit vector keeps every lane finite.
-        for (int j = 0; j < 3; ++j) batches.fibre[at * 3 + static_cast<std::size_t>(j)].lane[l] = tissue.fibre.cols() > 0 ? tissue.fibre(j, column) : (j == 0 ? 1.0 : 0.0);
+        for (int j = 0; j < 3; ++j)
+          batches.fibre[at * 3 + static_cast<std::size_t>(j)].lane[l] =
+              tissue.fibre.cols() > 0 ? tissue.fibre(j, column) : (j == 0 ? 1.0 : 0.0);
         batches.muscle[at].lane[l] = tissue.muscle.size() > 0 ? tissue.muscle[column] : 1.0;
         batches.soft_tissue[at].lane[l] = tissue.soft_tissue.size() > 0 ? tissue.soft_tissue[column] : 0.0;
       }
       if (batches.shared_pressure_shape || p == 0) continue;
       const Eigen::MatrixXd phi = discontinuous_shapes(d, cell);
-      const Eigen::MatrixXd inverse = (phi * weights.asDiagonal() * phi.transpose()).llt().solve(Eigen::MatrixXd::Identity(p, p));
+      const Eigen::MatrixXd inverse =
+          (phi * weights.asDiagonal() * phi.transpose()).llt().solve(Eigen::MatrixXd::Identity(p, p));
       for (int q = 0; q < n_q; ++q) {
-        for (int m = 0; m < p; ++m) batches.pressure_shape[(b * static_cast<std::size_t>(n_q) + static_cast<std::size_t>(q)) * static_cast<std::size_t>(p) + static_cast<std::size_t>(m)].lane[l] = phi(m, q);
+        for (int m = 0; m < p; ++m)
+          batches
+              .pressure_shape[(b * static_cast<std::size_t>(n_q) + static_cast<std::size_t>(q)) *
+                                  static_cast<std::size_t>(p) +
+                              static_cast<std::size_t>(m)]
+              .lane[l] = phi(m, q);
       }
       for (int m = 0; m < p; ++m) {
-        for (int k = 0; k < p; ++k) batches.mass_inverse[b * static_cast<std::size_t>(p * p) + static_cast<std::size_t>(m * p + k)].lane[l] = inverse(m, k);
+        for (int k = 0; k < p; ++k)
+          batches.mass_inverse[b * static_cast<std::size_t>(p * p) + static_cast<std::size_t>(m * p + k)]
+              .lane[l] = inverse(m, k);
       }
     }
   }

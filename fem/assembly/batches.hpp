@@ -1,6 +1,7 @@
 #pragma once
-/// Cells of one region in groups of four, with what the kernel reads that does not change; and colours: batches of one
-/// colour share no node, so that they may be summed at the same time, and colour after colour in a fixed order.
+/// Cells of one region in groups of four, with what the kernel reads that does not change; and colours:
+/// batches of one colour share no node, so that they may be summed at the same time, and colour after colour
+/// in a fixed order.
 
 #include <array>
 #include <vector>

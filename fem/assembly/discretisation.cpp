@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "fem/element/shape.hpp"
@@ -21,10 +22,12 @@ Discretisation::Discretisation(std::shared_ptr<const data::Mesh> mesh, Formulati
   const data::CellType wanted = cell_type(formulation);
   if (mesh_->type != wanted) {
     throw data::InputError("cell-type-mismatch",
-                           fmt::format("element `{}` needs cells of type {}, the mesh has {}", to_string(formulation), to_string(wanted), to_string(mesh_->type)),
+                           fmt::format("element `{}` needs cells of type {}, the mesh has {}",
+                                       to_string(formulation), to_string(wanted), to_string(mesh_->type)),
                            "elevate the mesh to that type, or choose an element of the mesh's type");
   }
-  const int cells = mesh_->cell_count(), points = mesh_->point_count(), corners = data::corners_per_cell(wanted);
+  const int cells = mesh_->cell_count(), points = mesh_->point_count(),
+            corners = data::corners_per_cell(wanted);
   const bool bubble = has_bubble(formulation);
   nodes_per_cell_ = data::nodes_per_cell(wanted) + (bubble ? 1 : 0);
   node_count_ = points + (bubble ? cells : 0);
@@ -35,9 +38,14 @@ Discretisation::Discretisation(std::shared_ptr<const data::Mesh> mesh, Formulati
   pressure_node_count_ = 0;
   pressures_per_cell_ = 0;
   switch (pressure_space(formulation)) {
-    case PressureSpace::none: break;
-    case PressureSpace::constant: pressures_per_cell_ = 1; break;
-    case PressureSpace::linear_discontinuous: pressures_per_cell_ = 4; break;
+    case PressureSpace::none:
+      break;
+    case PressureSpace::constant:
+      pressures_per_cell_ = 1;
+      break;
+    case PressureSpace::linear_discontinuous:
+      pressures_per_cell_ = 4;
+      break;
     case PressureSpace::continuous: {
       pressures_per_cell_ = corners;
       std::vector<int> number(static_cast<std::size_t>(points), -1);
@@ -51,7 +59,8 @@ Discretisation::Discretisation(std::shared_ptr<const data::Mesh> mesh, Formulati
       }
       pressure_nodes_.resize(corners, cells);
       for (int c = 0; c < cells; ++c) {
-        for (int a = 0; a < corners; ++a) pressure_nodes_(a, c) = number[static_cast<std::size_t>(mesh_->cells(a, c))];
+        for (int a = 0; a < corners; ++a)
+          pressure_nodes_(a, c) = number[static_cast<std::size_t>(mesh_->cells(a, c))];
       }
     }
   }
@@ -90,12 +99,16 @@ Discretisation::Discretisation(std::shared_ptr<const data::Mesh> mesh, Formulati
   std::string list;
   for (std::size_t i = 0; i < std::min(named_cells, inverted.size()); ++i) {
     const int c = inverted[i].second;
-    list += fmt::format("{}{} (region `{}`, Jacobian {:.3g})", i > 0 ? ", " : "", c, mesh_->regions[static_cast<std::size_t>(mesh_->region_of_cell[static_cast<std::size_t>(c)])],
-                        inverted[i].first);
+    list += fmt::format(
+        "{}{} (region `{}`, Jacobian {:.3g})", i > 0 ? ", " : "", c,
+        mesh_->regions[static_cast<std::size_t>(mesh_->region_of_cell[static_cast<std::size_t>(c)])],
+        inverted[i].first);
   }
-  throw data::InputError("inverted-cell", fmt::format("{} of {} cells are turned inside out or flat at a quadrature point: {}{}", inverted.size(), cells, list,
-                                                      inverted.size() > named_cells ? ", ..." : ""),
-                         "mend the mesh there; node order and curved edges are the usual causes");
+  throw data::InputError(
+      "inverted-cell",
+      fmt::format("{} of {} cells are turned inside out or flat at a quadrature point: {}{}", inverted.size(),
+                  cells, list, inverted.size() > named_cells ? ", ..." : ""),
+      "mend the mesh there; node order and curved edges are the usual causes");
 }
 
 void Discretisation::reference_gradients(int cell, int q, Eigen::MatrixX3d& gradient, double& weight) const {
@@ -109,7 +122,8 @@ void Discretisation::reference_gradients(int cell, int q, Eigen::MatrixX3d& grad
 
 Eigen::Vector3d Discretisation::position(int cell, int q) const {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (int a = 0; a < mesh_->cells.rows(); ++a) x += local_values_(a, q) * mesh_->points.col(mesh_->cells(a, cell));
+  for (int a = 0; a < mesh_->cells.rows(); ++a)
+    x += local_values_(a, q) * mesh_->points.col(mesh_->cells(a, cell));
   return x;
 }
 

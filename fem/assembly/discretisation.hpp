@@ -1,6 +1,6 @@
 #pragma once
-/// What of a problem does not change while it is solved: nodes (points of the mesh, and bubbles), pressures, quadrature
-/// geometry.
+/// What of a problem does not change while it is solved: nodes (points of the mesh, and bubbles), pressures,
+/// quadrature geometry.
 
 #include <Eigen/Core>
 #include <limits>
@@ -15,18 +15,21 @@ namespace brachium::fem {
 
 class Discretisation {
  public:
-  /// Throws InputError: cell-type-mismatch (with the way to elevate), inverted-cell (named), mesh-* of check_structure.
+  /// Throws InputError: cell-type-mismatch (with the way to elevate), inverted-cell (named), mesh-* of
+  /// check_structure.
   Discretisation(std::shared_ptr<const data::Mesh> mesh, Formulation formulation);
 
   const data::Mesh& mesh() const { return *mesh_; }
   Formulation formulation() const { return formulation_; }
-  int node_count() const { return node_count_; }              ///< points of the mesh, and one bubble a cell
+  int node_count() const { return node_count_; }  ///< points of the mesh, and one bubble a cell
   int cell_count() const { return mesh_->cell_count(); }
-  int nodes_per_cell() const { return nodes_per_cell_; }      ///< with the bubble
-  int pressures_per_cell() const { return pressures_per_cell_; }  ///< 0, 1, 4 (discontinuous) or 8, 4 (continuous)
+  int nodes_per_cell() const { return nodes_per_cell_; }  ///< with the bubble
+  int pressures_per_cell() const {
+    return pressures_per_cell_;
+  }  ///< 0, 1, 4 (discontinuous) or 8, 4 (continuous)
   int pressure_node_count() const { return pressure_node_count_; }  ///< continuous pressures; 0 otherwise
   int dof_count() const { return 3 * node_count_ + pressure_node_count_; }
-  const Eigen::MatrixXi& nodes_of_cell() const { return nodes_; }              ///< nodes_per_cell x n_cells
+  const Eigen::MatrixXi& nodes_of_cell() const { return nodes_; }  ///< nodes_per_cell x n_cells
   const Eigen::MatrixXi& pressure_nodes_of_cell() const { return pressure_nodes_; }  ///< continuous only
   /// Vertex of the mesh that a continuous pressure belongs to.
   const std::vector<int>& pressure_vertices() const { return pressure_vertices_; }

@@ -6,7 +6,6 @@ namespace brachium::fem {
 namespace {
 
 namespace baseline {
-#include "fem/material/lanes.inc"
 #include "fem/material/laws.inc"
 
 #include "fem/assembly/kernel.inc"
@@ -18,7 +17,6 @@ namespace baseline {
 #pragma GCC push_options
 #pragma GCC target("avx2,fma")
 namespace avx2 {
-#include "fem/material/lanes.inc"
 #include "fem/material/laws.inc"
 
 #include "fem/assembly/kernel.inc"
@@ -41,6 +39,8 @@ Kernel choose_kernel(bool portable) {
   return baseline::run;
 }
 
-const char* kernel_name(Kernel kernel) { return kernel == baseline::run ? "portable" : "AVX2 with fused multiply-add"; }
+const char* kernel_name(Kernel kernel) {
+  return kernel == baseline::run ? "portable" : "AVX2 with fused multiply-add";
+}
 
 }  // namespace brachium::fem

@@ -5,18 +5,20 @@
 namespace brachium::fem {
 namespace {
 
-/// Groups of unknowns that couple alike: nodes (3 components) and pressure nodes (1), numbered nodes first. Neighbours
-/// are the groups that share a cell, each group's own included, ascending.
+/// Groups of unknowns that couple alike: nodes (3 components) and pressure nodes (1), numbered nodes first.
+/// Neighbours are the groups that share a cell, each group's own included, ascending.
 struct Neighbourhood {
   std::vector<int> start, neighbour;
 };
 
 Neighbourhood neighbourhood(const Discretisation& d) {
-  const int groups = d.node_count() + d.pressure_node_count(), cells = d.cell_count(), nodes = d.nodes_per_cell();
+  const int groups = d.node_count() + d.pressure_node_count(), cells = d.cell_count(),
+            nodes = d.nodes_per_cell();
   const bool continuous = d.pressure_node_count() > 0;
   const int pressures = continuous ? d.pressures_per_cell() : 0;
   const auto group = [&](int slot, int cell) {
-    return slot < nodes ? d.nodes_of_cell()(slot, cell) : d.node_count() + d.pressure_nodes_of_cell()(slot - nodes, cell);
+    return slot < nodes ? d.nodes_of_cell()(slot, cell)
+                        : d.node_count() + d.pressure_nodes_of_cell()(slot - nodes, cell);
   };
   std::vector<int> cell_start(static_cast<std::size_t>(groups) + 1, 0), cell_of;
   for (int c = 0; c < cells; ++c) {
@@ -26,14 +28,16 @@ Neighbourhood neighbourhood(const Discretisation& d) {
   cell_of.resize(static_cast<std::size_t>(cell_start.back()));
   std::vector<int> fill(cell_start.begin(), cell_start.end() - 1);
   for (int c = 0; c < cells; ++c) {
-    for (int s = 0; s < nodes + pressures; ++s) cell_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(group(s, c))]++)] = c;
+    for (int s = 0; s < nodes + pressures; ++s)
+      cell_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(group(s, c))]++)] = c;
   }
   Neighbourhood result;
   result.start.assign(1, 0);
   std::vector<int> mark(static_cast<std::size_t>(groups), -1), row;
   for (int g = 0; g < groups; ++g) {
     row.clear();
-    for (int i = cell_start[static_cast<std::size_t>(g)]; i < cell_start[static_cast<std::size_t>(g) + 1]; ++i) {
+    for (int i = cell_start[static_cast<std::size_t>(g)]; i < cell_start[static_cast<std::size_t>(g) + 1];
+         ++i) {
       const int c = cell_of[static_cast<std::size_t>(i)];
       for (int s = 0; s < nodes + pressures; ++s) {
         const int h = group(s, c);
@@ -51,10 +55,12 @@ Neighbourhood neighbourhood(const Discretisation& d) {
 
 }  // namespace
 
-Unknowns number_unknowns(const Discretisation& d, const std::vector<char>& held, const Eigen::Matrix3Xd& frames) {
+Unknowns number_unknowns(const Discretisation& d, const std::vector<char>& held,
+                         const Eigen::Matrix3Xd& frames) {
   Unknowns u;
   u.frames = frames;
-  for (int n = 0; 3 * n < frames.cols(); ++n) u.framed.push_back(frames.middleCols<3>(3 * n).isIdentity(0.0) ? 0 : 1);
+  for (int n = 0; 3 * n < frames.cols(); ++n)
+    u.framed.push_back(frames.middleCols<3>(3 * n).isIdentity(0.0) ? 0 : 1);
   const int node_dofs = 3 * d.node_count(), groups = d.node_count() + d.pressure_node_count();
   const bool continuous = d.pressure_node_count() > 0;
   u.unknown_of_dof.assign(static_cast<std::size_t>(d.dof_count()), -1);
@@ -70,25 +76,31 @@ Unknowns number_unknowns(const Discretisation& d, const std::vector<char>& held,
   }
   first.back() = u.count();
 
-  // Columns: the rest of the own group, then the later neighbours. Where a neighbour's rows begin within a column of a
-  // group's first unknown is kept for the scatter.
+  // Columns: the rest of the own group, then the later neighbours. Where a neighbour's rows begin within a
+  // column of a group's first unknown is kept for the scatter.
   const Neighbourhood near = neighbourhood(d);
-  const auto size = [&](int g) { return first[static_cast<std::size_t>(g) + 1] - first[static_cast<std::size_t>(g)]; };
+  const auto size = [&](int g) {
+    return first[static_cast<std::size_t>(g) + 1] - first[static_cast<std::size_t>(g)];
+  };
   std::vector<int> offset(near.neighbour.size(), 0);
   u.pattern.n = u.count();
   u.pattern.column_start.assign(1, 0);
   for (int g = 0; g < groups; ++g) {
     int entries = 0;
-    for (int i = near.start[static_cast<std::size_t>(g)]; i < near.start[static_cast<std::size_t>(g) + 1]; ++i) {
+    for (int i = near.start[static_cast<std::size_t>(g)]; i < near.start[static_cast<std::size_t>(g) + 1];
+         ++i) {
       const int h = near.neighbour[static_cast<std::size_t>(i)];
       if (h < g) continue;
       offset[static_cast<std::size_t>(i)] = entries;
       entries += size(h);
     }
     for (int k = 0; k < size(g); ++k) {
-      for (int i = near.start[static_cast<std::size_t>(g)]; i < near.start[static_cast<std::size_t>(g) + 1]; ++i) {
+      for (int i = near.start[static_cast<std::size_t>(g)]; i < near.start[static_cast<std::size_t>(g) + 1];
+           ++i) {
         const int h = near.neighbour[static_cast<std::size_t>(i)];
-        for (int r = first[static_cast<std::size_t>(h)] + (h == g ? k : 0); h >= g && r < first[static_cast<std::size_t>(h) + 1]; ++r) u.pattern.row.push_back(r);
+        for (int r = first[static_cast<std::size_t>(h)] + (h == g ? k : 0);
+             h >= g && r < first[static_cast<std::size_t>(h) + 1]; ++r)
+          u.pattern.row.push_back(r);
       }
       u.pattern.column_start.push_back(static_cast<int>(u.pattern.row.size()));
     }
@@ -98,13 +110,18 @@ Unknowns number_unknowns(const Discretisation& d, const std::vector<char>& held,
     const auto begin = near.neighbour.begin() + near.start[static_cast<std::size_t>(column_group)];
     const auto end = near.neighbour.begin() + near.start[static_cast<std::size_t>(column_group) + 1];
     const auto entry = std::lower_bound(begin, end, row_group) - near.neighbour.begin();
-    const int within = column - first[static_cast<std::size_t>(column_group)];  // columns of a group shorten one by one
-    return u.pattern.column_start[static_cast<std::size_t>(column)] + offset[static_cast<std::size_t>(entry)] + (row - first[static_cast<std::size_t>(row_group)]) - within;
+    const int within =
+        column - first[static_cast<std::size_t>(column_group)];  // columns of a group shorten one by one
+    return u.pattern.column_start[static_cast<std::size_t>(column)] +
+           offset[static_cast<std::size_t>(entry)] + (row - first[static_cast<std::size_t>(row_group)]) -
+           within;
   };
   const auto entry = [&](int dof_a, int dof_b) {
-    int row = u.unknown_of_dof[static_cast<std::size_t>(dof_a)], column = u.unknown_of_dof[static_cast<std::size_t>(dof_b)];
+    int row = u.unknown_of_dof[static_cast<std::size_t>(dof_a)],
+        column = u.unknown_of_dof[static_cast<std::size_t>(dof_b)];
     if (row < 0 || column < 0) return -1;
-    int row_group = u.groups.block_of_unknown[static_cast<std::size_t>(row)], column_group = u.groups.block_of_unknown[static_cast<std::size_t>(column)];
+    int row_group = u.groups.block_of_unknown[static_cast<std::size_t>(row)],
+        column_group = u.groups.block_of_unknown[static_cast<std::size_t>(column)];
     if (row < column) {
       std::swap(row, column);
       std::swap(row_group, column_group);
@@ -119,7 +136,8 @@ Unknowns number_unknowns(const Discretisation& d, const std::vector<char>& held,
       for (int b = 0; b <= a; ++b) {
         const int na = d.nodes_of_cell()(a, c), nb = d.nodes_of_cell()(b, c);
         for (int i = 0; i < 3; ++i) {
-          for (int k = 0; k < 3; ++k) u.scatter.push_back(a == b && i < k ? -1 : entry(3 * na + i, 3 * nb + k));
+          for (int k = 0; k < 3; ++k)
+            u.scatter.push_back(a == b && i < k ? -1 : entry(3 * na + i, 3 * nb + k));
         }
       }
     }
@@ -130,7 +148,9 @@ Unknowns number_unknowns(const Discretisation& d, const std::vector<char>& held,
       }
     }
     for (int m = 0; m < pressures; ++m) {
-      for (int l = 0; l <= m; ++l) u.scatter.push_back(entry(node_dofs + d.pressure_nodes_of_cell()(m, c), node_dofs + d.pressure_nodes_of_cell()(l, c)));
+      for (int l = 0; l <= m; ++l)
+        u.scatter.push_back(entry(node_dofs + d.pressure_nodes_of_cell()(m, c),
+                                  node_dofs + d.pressure_nodes_of_cell()(l, c)));
     }
   }
   return u;
@@ -140,7 +160,8 @@ Eigen::VectorXd Unknowns::restrict(const Eigen::VectorXd& by_dof) const {
   Eigen::VectorXd x(count());
   for (int i = 0; i < count(); ++i) {
     const int dof = dof_of_unknown[static_cast<std::size_t>(i)], node = dof / 3;
-    x[i] = has_frames() && 3 * node < frames.cols() ? frames.col(dof).dot(by_dof.segment<3>(3 * node)) : by_dof[dof];
+    x[i] = has_frames() && 3 * node < frames.cols() ? frames.col(dof).dot(by_dof.segment<3>(3 * node))
+                                                    : by_dof[dof];
   }
   return x;
 }

@@ -20,8 +20,10 @@ const GaussLine& gauss_line(int n) {
       {{-0.77459666924148337704, 0.0, 0.77459666924148337704}, {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0}},
       {{-0.86113631159405257522, -0.33998104358485626480, 0.33998104358485626480, 0.86113631159405257522},
        {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263, 0.34785484513745385737}},
-      {{-0.90617984593866399280, -0.53846931010568309104, 0.0, 0.53846931010568309104, 0.90617984593866399280},
-       {0.23692688505618908751, 0.47862867049936646804, 128.0 / 225.0, 0.47862867049936646804, 0.23692688505618908751}},
+      {{-0.90617984593866399280, -0.53846931010568309104, 0.0, 0.53846931010568309104,
+        0.90617984593866399280},
+       {0.23692688505618908751, 0.47862867049936646804, 128.0 / 225.0, 0.47862867049936646804,
+        0.23692688505618908751}},
   }};
   if (n < 1 || n > 5) throw std::logic_error("Gauss rules have 1 to 5 points a direction");
   return rules[static_cast<std::size_t>(n - 1)];
@@ -46,7 +48,8 @@ Quadrature tensor(int n, int dimension) {
   return rule;
 }
 
-/// All permutations of barycentric coordinates, each with the same weight (a fraction of the simplex' volume).
+/// All permutations of barycentric coordinates, each with the same weight (a fraction of the simplex'
+/// volume).
 struct Orbit {
   std::vector<double> barycentric;
   double weight;
@@ -64,15 +67,19 @@ Quadrature symmetric(const std::vector<Orbit>& orbits, double volume) {
       weights.push_back(orbit.weight * volume);
     } while (std::next_permutation(b.begin(), b.end()));
   }
-  Quadrature rule{Eigen::MatrixXd(dimension, static_cast<Eigen::Index>(points.size())),
-                  Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()))};
+  Quadrature rule{
+      Eigen::MatrixXd(dimension, static_cast<Eigen::Index>(points.size())),
+      Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()))};
   for (std::size_t q = 0; q < points.size(); ++q) {
-    for (Eigen::Index d = 0; d < dimension; ++d) rule.points(d, static_cast<Eigen::Index>(q)) = points[q][static_cast<std::size_t>(d) + 1];
+    for (Eigen::Index d = 0; d < dimension; ++d)
+      rule.points(d, static_cast<Eigen::Index>(q)) = points[q][static_cast<std::size_t>(d) + 1];
   }
   return rule;
 }
 
-Orbit three_equal(double a, double weight) { return {{1.0 - 3.0 * a, a, a, a}, weight}; }
+Orbit three_equal(double a, double weight) {
+  return {{1.0 - 3.0 * a, a, a, a}, weight};
+}
 
 const Quadrature& tetrahedron_degree_2() {
   static const Quadrature rule = symmetric({three_equal(0.13819660112501051518, 0.25)}, 1.0 / 6.0);
@@ -92,11 +99,12 @@ const Quadrature& tetrahedron_degree_5() {
 /// Keast's 24 points, degree 6.
 const Quadrature& tetrahedron_degree_6() {
   constexpr double c = 0.063661001875017525299;
-  static const Quadrature rule = symmetric({three_equal(0.21460287125915202929, 0.039922750258167938495),
-                                            three_equal(0.040673958534611353116, 0.010077211055320642785),
-                                            three_equal(0.32233789014227551034, 0.055357181543654722054),
-                                            {{c, c, 0.26967233145831580803, 0.60300566479164914137}, 0.048214285714285714286}},
-                                           1.0 / 6.0);
+  static const Quadrature rule =
+      symmetric({three_equal(0.21460287125915202929, 0.039922750258167938495),
+                 three_equal(0.040673958534611353116, 0.010077211055320642785),
+                 three_equal(0.32233789014227551034, 0.055357181543654722054),
+                 {{c, c, 0.26967233145831580803, 0.60300566479164914137}, 0.048214285714285714286}},
+                1.0 / 6.0);
   return rule;
 }
 
@@ -108,7 +116,9 @@ const Quadrature& triangle_degree_2() {
 /// Dunavant's 6 points, degree 4.
 const Quadrature& triangle_degree_4() {
   constexpr double a = 0.44594849091596488632, b = 0.091576213509770743460;
-  static const Quadrature rule = symmetric({{{1.0 - 2.0 * a, a, a}, 0.22338158967801146570}, {{1.0 - 2.0 * b, b, b}, 0.10995174365532186764}}, 0.5);
+  static const Quadrature rule = symmetric(
+      {{{1.0 - 2.0 * a, a, a}, 0.22338158967801146570}, {{1.0 - 2.0 * b, b, b}, 0.10995174365532186764}},
+      0.5);
   return rule;
 }
 
@@ -117,11 +127,15 @@ const Quadrature& triangle_degree_4() {
 const Quadrature& cell_quadrature(Formulation formulation) {
   static const Quadrature hexahedron_2 = tensor(2, 3), hexahedron_3 = tensor(3, 3);
   switch (cell_type(formulation)) {
-    case data::CellType::tet4: return tetrahedron_degree_2();
-    case data::CellType::tet10: return has_bubble(formulation) ? tetrahedron_degree_6() : tetrahedron_degree_5();
-    case data::CellType::hex8: return hexahedron_2;
+    case data::CellType::tet4:
+      return tetrahedron_degree_2();
+    case data::CellType::tet10:
+      return has_bubble(formulation) ? tetrahedron_degree_6() : tetrahedron_degree_5();
+    case data::CellType::hex8:
+      return hexahedron_2;
     case data::CellType::hex20:
-    case data::CellType::hex27: return hexahedron_3;
+    case data::CellType::hex27:
+      return hexahedron_3;
   }
   throw std::logic_error("cell type without quadrature");
 }
@@ -129,15 +143,21 @@ const Quadrature& cell_quadrature(Formulation formulation) {
 const Quadrature& face_quadrature(data::CellType type) {
   static const Quadrature square_2 = tensor(2, 2), square_3 = tensor(3, 2);
   switch (type) {
-    case data::CellType::tet4: return triangle_degree_2();
-    case data::CellType::tet10: return triangle_degree_4();
-    case data::CellType::hex8: return square_2;
+    case data::CellType::tet4:
+      return triangle_degree_2();
+    case data::CellType::tet10:
+      return triangle_degree_4();
+    case data::CellType::hex8:
+      return square_2;
     case data::CellType::hex20:
-    case data::CellType::hex27: return square_3;
+    case data::CellType::hex27:
+      return square_3;
   }
   throw std::logic_error("cell type without quadrature");
 }
 
-Quadrature gauss_hexahedron(int n) { return tensor(n, 3); }
+Quadrature gauss_hexahedron(int n) {
+  return tensor(n, 3);
+}
 
 }  // namespace brachium::fem

@@ -9,26 +9,31 @@ namespace {
 using data::CellType;
 
 /// Local coordinates of the nodes of a hexahedron in [-1, 1]^3, in the order of data/model/mesh.hpp.
-constexpr std::array<std::array<int, 3>, 27> hexahedron{{
-    {-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1},  // corners
-    {0, -1, -1}, {1, 0, -1}, {0, 1, -1}, {-1, 0, -1},                                                    // bottom edges
-    {0, -1, 1}, {1, 0, 1}, {0, 1, 1}, {-1, 0, 1},                                                        // top edges
-    {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0},                                                      // upright edges
-    {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1},                                 // face centres
-    {0, 0, 0}}};
+constexpr std::array<std::array<int, 3>, 27> hexahedron{
+    {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1},
+     {1, 1, 1},    {-1, 1, 1},                                                    // corners
+     {0, -1, -1},  {1, 0, -1},  {0, 1, -1}, {-1, 0, -1},                          // bottom edges
+     {0, -1, 1},   {1, 0, 1},   {0, 1, 1},  {-1, 0, 1},                           // top edges
+     {-1, -1, 0},  {1, -1, 0},  {1, 1, 0},  {-1, 1, 0},                           // upright edges
+     {-1, 0, 0},   {1, 0, 0},   {0, -1, 0}, {0, 1, 0},   {0, 0, -1},  {0, 0, 1},  // face centres
+     {0, 0, 0}}};
 
-constexpr std::array<std::array<int, 2>, 6> tetrahedron_edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+constexpr std::array<std::array<int, 2>, 6> tetrahedron_edges{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 constexpr std::array<std::array<int, 2>, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
 
 /// Local coordinates of the nodes of a quadrilateral.
-constexpr std::array<std::array<int, 2>, 9> quadrilateral{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}}};
+constexpr std::array<std::array<int, 2>, 9> quadrilateral{
+    {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}}};
 
 struct Line {
   double value, slope;
 };
 
 /// Linear Lagrange polynomial that is 1 at `node` in {-1, 1}.
-Line linear(int node, double x) { return {0.5 * (1.0 + node * x), 0.5 * node}; }
+Line linear(int node, double x) {
+  return {0.5 * (1.0 + node * x), 0.5 * node};
+}
 
 /// Quadratic Lagrange polynomial that is 1 at `node` in {-1, 0, 1}.
 Line quadratic(int node, double x) {
@@ -37,7 +42,8 @@ Line quadratic(int node, double x) {
 }
 
 template <std::size_t N, std::size_t Total>
-Shape tensor(const std::array<std::array<int, N>, Total>& nodes, int count, bool second_order, const double* xi) {
+Shape tensor(const std::array<std::array<int, N>, Total>& nodes, int count, bool second_order,
+             const double* xi) {
   Shape shape{Eigen::VectorXd(count), Eigen::MatrixXd(count, static_cast<Eigen::Index>(N))};
   for (int a = 0; a < count; ++a) {
     std::array<Line, N> line;
@@ -139,7 +145,8 @@ Eigen::Matrix3Xd coordinates(CellType type) {
     return x;
   }
   for (int a = 0; a < count; ++a) {
-    for (int d = 0; d < 3; ++d) x(d, a) = hexahedron[static_cast<std::size_t>(a)][static_cast<std::size_t>(d)];
+    for (int d = 0; d < 3; ++d)
+      x(d, a) = hexahedron[static_cast<std::size_t>(a)][static_cast<std::size_t>(d)];
   }
   return x;
 }
@@ -148,11 +155,16 @@ Eigen::Matrix3Xd coordinates(CellType type) {
 
 Shape cell_shape(CellType type, const Eigen::Vector3d& xi) {
   switch (type) {
-    case CellType::tet4: return simplex<4>(tetrahedron_edges, false, xi.data());
-    case CellType::tet10: return simplex<4>(tetrahedron_edges, true, xi.data());
-    case CellType::hex8: return tensor(hexahedron, 8, false, xi.data());
-    case CellType::hex20: return serendipity(hexahedron, 20, xi.data());
-    case CellType::hex27: return tensor(hexahedron, 27, true, xi.data());
+    case CellType::tet4:
+      return simplex<4>(tetrahedron_edges, false, xi.data());
+    case CellType::tet10:
+      return simplex<4>(tetrahedron_edges, true, xi.data());
+    case CellType::hex8:
+      return tensor(hexahedron, 8, false, xi.data());
+    case CellType::hex20:
+      return serendipity(hexahedron, 20, xi.data());
+    case CellType::hex27:
+      return tensor(hexahedron, 27, true, xi.data());
   }
   throw std::logic_error("cell type without shape functions");
 }
@@ -166,18 +178,24 @@ Shape bubble_shape(const Eigen::Vector3d& xi) {
 
 Shape face_shape(CellType type, const Eigen::Vector2d& rs) {
   switch (type) {
-    case CellType::tet4: return simplex<3>(triangle_edges, false, rs.data());
-    case CellType::tet10: return simplex<3>(triangle_edges, true, rs.data());
-    case CellType::hex8: return tensor(quadrilateral, 4, false, rs.data());
-    case CellType::hex20: return serendipity(quadrilateral, 8, rs.data());
-    case CellType::hex27: return tensor(quadrilateral, 9, true, rs.data());
+    case CellType::tet4:
+      return simplex<3>(triangle_edges, false, rs.data());
+    case CellType::tet10:
+      return simplex<3>(triangle_edges, true, rs.data());
+    case CellType::hex8:
+      return tensor(quadrilateral, 4, false, rs.data());
+    case CellType::hex20:
+      return serendipity(quadrilateral, 8, rs.data());
+    case CellType::hex27:
+      return tensor(quadrilateral, 9, true, rs.data());
   }
   throw std::logic_error("cell type without shape functions");
 }
 
 const Eigen::Matrix3Xd& node_coordinates(CellType type) {
-  static const std::array<Eigen::Matrix3Xd, 5> tables{coordinates(CellType::tet4), coordinates(CellType::tet10), coordinates(CellType::hex8),
-                                                      coordinates(CellType::hex20), coordinates(CellType::hex27)};
+  static const std::array<Eigen::Matrix3Xd, 5> tables{
+      coordinates(CellType::tet4), coordinates(CellType::tet10), coordinates(CellType::hex8),
+      coordinates(CellType::hex20), coordinates(CellType::hex27)};
   return tables.at(static_cast<std::size_t>(type));
 }
 
