@@ -40,7 +40,7 @@ std::shared_ptr<const data::Mesh> distorted_mesh(Formulation formulation, int n)
     mesh.points.col(p) +=
         0.05 * Eigen::Vector3d(std::sin(2.0 * x[1] + x[2]), x[0] * x[2], std::cos(1.5 * x[0]) * x[1]);
   }
-  return std::make_shared<const data::Mesh>(convert(mesh, type));
+  return std::make_shared<const data::Mesh>(as_type(std::move(mesh), type));
 }
 
 TissueField tissue(const Discretisation& d) {
@@ -105,7 +105,7 @@ Eigen::MatrixXd dense(const Unknowns& u, const std::vector<double>& values) {
 
 class EveryFormulation : public testing::TestWithParam<Formulation> {};
 INSTANTIATE_TEST_SUITE_P(Assembly, EveryFormulation, testing::ValuesIn(all_formulations),
-                         [](const auto& info) { return to_string(info.param); });
+                         [](const auto& instance) { return to_string(instance.param); });
 
 TEST_P(EveryFormulation, ForcesAreTheDerivativeOfTheEnergy) {
   const Body b = make(GetParam());

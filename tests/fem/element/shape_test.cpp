@@ -1,6 +1,8 @@
 /// Shape functions: interpolation, partition of unity, derivatives by differences, polynomials they must
 /// reproduce.
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "fem/element/shape.hpp"
@@ -15,7 +17,7 @@ constexpr CellType all_types[] = {CellType::tet4, CellType::tet10, CellType::hex
 
 class EveryCell : public testing::TestWithParam<CellType> {};
 INSTANTIATE_TEST_SUITE_P(ShapeFunctions, EveryCell, testing::ValuesIn(all_types),
-                         [](const auto& info) { return data::to_string(info.param); });
+                         [](const auto& instance) { return data::to_string(instance.param); });
 
 const Eigen::Vector3d inside(0.21, 0.13, 0.34);
 
