@@ -2,6 +2,8 @@
 /// A report as plain values: sections of paragraphs, tables and plots. What draws it (html.hpp) knows nothing
 /// of muscles; what fills it (the stages) knows nothing of HTML.
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -82,6 +84,37 @@ struct PlotRow {
   double min_width_px = 0.0;  ///< least width of one plot; 0: one plot takes the full width, several share it
 };
 
+/// A part of a body's surface that can be shown or hidden.
+struct ViewRegion {
+  std::string name{};
+  std::vector<std::array<int, 3>> triangles{};  ///< points, counter-clockwise seen from outside
+  std::vector<std::array<int, 2>> edges{};      ///< pairs of points: sides of the mesh's cells on this surface
+};
+
+/// A quantity on the surface, drawn in colours.
+struct ViewField {
+  std::string label{};                       ///< with its unit, "fibre stress [kPa]"
+  std::vector<std::vector<double>> values{};  ///< by state: one a point; NaN where it has no meaning (grey)
+};
+
+struct ViewState {
+  std::string label{};              ///< "stretch, 0.50"
+  std::vector<double> positions{};  ///< x y z of each point, in View3d::length_unit
+};
+
+/// A deforming body in space: a reader turns it, colours it by a field and steps through its states. What is too large
+/// for a page is drawn with fewer states or a coarser surface, and the note says so (view3d.hpp).
+struct View3d {
+  std::string title{};
+  std::string length_unit = "mm";
+  std::vector<double> reference{};  ///< x y z of each point, undeformed; empty: no outline is offered
+  std::vector<ViewRegion> regions{};
+  std::vector<ViewState> states{};  ///< the last is shown first
+  std::vector<ViewField> fields{};  ///< the first is shown first; may be empty
+  std::string note{};
+  std::size_t limit_bytes = 2'000'000;  ///< of the page that this view may take
+};
+
 struct Section;
 /// Folded away until opened (always open in print).
 struct Details {
@@ -89,7 +122,7 @@ struct Details {
   std::vector<Section> content;
 };
 
-using Block = std::variant<Paragraph, Grid, PlotRow, Details>;
+using Block = std::variant<Paragraph, Grid, PlotRow, View3d, Details>;
 
 struct Section {
   std::string title{};

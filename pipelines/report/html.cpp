@@ -13,6 +13,7 @@
 #include "pipelines/report/plot.hpp"
 #include "pipelines/report/style.hpp"
 #include "pipelines/report/text.hpp"
+#include "pipelines/report/view3d.hpp"
 
 namespace brachium::pipelines::report {
 namespace {
@@ -45,9 +46,11 @@ class Page {
   void block(const Paragraph& paragraph, int level);
   void block(const Grid& grid, int level);
   void block(const PlotRow& row, int level);
+  void block(const View3d& view, int level);
   void block(const Details& details, int level);
 
   std::string out_;
+  bool has_view_ = false;
   std::set<std::string> anchors_ = {"findings", "chain", "contents", "methods", "provenance", "probe"};
 };
 
@@ -140,6 +143,7 @@ void Page::end_matter(const Document& document) {
   }
   out_ += "</main>\n<script>";
   out_ += page_script();
+  if (has_view_) out_ += view3d_script();
   out_ += "</script>\n</body>\n</html>\n";
 }
 
@@ -180,6 +184,11 @@ void Page::block(const PlotRow& row, int) {
   if (common) out_ += "<div class=\"rowlegend\">" + legend + "</div>\n";
   for (const Plot& plot : row.plots) out_ += draw_plot(plot, frame);
   out_ += "</div>\n";
+}
+
+void Page::block(const View3d& view, int) {
+  has_view_ = true;
+  out_ += draw_view3d(view);
 }
 
 void Page::block(const Details& details, int level) {

@@ -87,6 +87,24 @@ svg.chain{display:block;margin:0 auto;max-width:100%;height:auto;min-width:var(-
 .box .name{font-size:14px;font-weight:600;fill:var(--ink)}.box .run{font-size:12px;fill:var(--soft)}.box .status{font-size:12px;fill:var(--ink)}
 .box.good .status{fill:var(--good)}.box.bad .status{fill:var(--bad)}.box.warning .status{fill:var(--warning)}
 .edge{fill:none;stroke:var(--axis);stroke-width:1.4}.head{fill:var(--axis)}
+.view3d{margin:14px 0}
+svg.poster{display:block;width:100%;height:auto;background:var(--raised);border-radius:8px}
+svg.poster text{font-size:12px;fill:var(--ink);font-variant-numeric:tabular-nums}
+.body path{fill:currentColor;stroke:currentColor;stroke-width:.7;stroke-linejoin:round}.body path.e{fill:none;stroke:#000;stroke-opacity:.34;stroke-width:.6}
+.ruler{fill:none;stroke:var(--ink);stroke-width:1.4}
+.v3bar{display:none}.v3stage{display:none}.live>.v3bar{display:flex}.live>.v3stage{display:block}.live>svg.poster{display:none}
+.v3bar{flex-wrap:wrap;align-items:center;gap:6px 16px;font-size:13.5px;margin:8px 0}
+.v3bar label{display:inline-flex;align-items:center;gap:5px;white-space:nowrap}
+.v3bar select,.v3bar button{font:inherit;color:var(--ink);background:var(--raised);border:1px solid var(--line);border-radius:6px;padding:3px 9px}
+.v3bar button{cursor:pointer;min-width:34px}.v3bar input{accent-color:var(--c0)}.v3bar input[type=range]{flex:0 1 220px;min-width:120px}
+.v3bar :focus-visible,.v3stage canvas:focus-visible{outline:2px solid var(--link);outline-offset:1px}
+.v3checks{display:flex;flex-wrap:wrap;align-items:center;gap:4px 14px;margin-left:auto}.v3state{font-variant-numeric:tabular-nums;white-space:pre}
+.v3legend{position:relative;flex:1 1 220px;max-width:380px;height:30px;margin:0 16px}.v3strip{height:10px;border-radius:2px}
+.v3legend span{position:absolute;top:13px;transform:translateX(-50%);font-size:11.5px;line-height:1.3;color:var(--soft);font-variant-numeric:tabular-nums}
+.v3stage{position:relative;height:clamp(260px,46vw,500px);background:var(--raised);border-radius:8px;overflow:hidden}
+.v3stage canvas{position:absolute;inset:0;width:100%;height:100%;border-radius:8px;touch-action:none;cursor:grab}.v3stage canvas:active{cursor:grabbing}
+.v3stage .v3over{pointer-events:none}
+.v3tip{position:absolute;display:none;pointer-events:none;background:var(--ink);color:var(--ground);font-size:12px;line-height:1.4;padding:2px 7px;border-radius:4px;white-space:nowrap}
 details{margin:12px 0;border:1px solid var(--line);border-radius:8px;padding:0 16px}
 summary{cursor:pointer;padding:9px 0;font-weight:600}details[open]{padding-bottom:12px}
 .more{border:0;padding:0;margin:4px 0 0;font-size:13.5px}.more summary{padding:2px 0;font-weight:400;color:var(--soft)}
@@ -100,11 +118,12 @@ padding:2px 7px;border-radius:4px;font-variant-numeric:tabular-nums;display:none
 @media print{@page{margin:15mm 14mm}
 body{max-width:none;padding:0;font-size:10.5pt;-webkit-print-color-adjust:exact;print-color-adjust:exact}
 h1{font-size:19pt}h2{font-size:14pt;margin-top:22pt}h3{font-size:12pt}
-h2,h3,h4,summary,figcaption,caption,.rowlegend{break-after:avoid}figure,tr,.findings li,.verdict,svg.chain{break-inside:avoid}
+h2,h3,h4,summary,figcaption,caption,.rowlegend{break-after:avoid}figure,tr,.findings li,.verdict,svg.chain,svg.poster{break-inside:avoid}
 thead{display:table-header-group}table{font-size:9pt}th,td{padding:3pt 6pt}.scroll{overflow:visible}
 .row{grid-template-columns:repeat(auto-fill,minmax(min(100%,calc(var(--w)*.68)),1fr))}
 svg.chain{min-width:0;max-height:135mm;width:auto}
 details{border:0;padding:0}details::details-content{content-visibility:visible;display:block}
+.live>.v3bar,.live>.v3stage,.v3help{display:none}.live>svg.poster{display:block}
 a{color:inherit}nav a{text-decoration:none}#probe,.fold{display:none!important}
 .l.c1:not(.d){stroke-dasharray:9 3}.l.c2:not(.d){stroke-dasharray:2 2}.l.c3:not(.d){stroke-dasharray:9 3 2 3}
 .l.c4:not(.d){stroke-dasharray:5 2}.l.c5:not(.d){stroke-dasharray:12 3 2 3 2 3}.l.c6:not(.d){stroke-dasharray:1 3}.l.c7:not(.d){stroke-dasharray:14 4}}
