@@ -35,10 +35,19 @@ const std::vector<ErrorCode>& error_codes() {
        "A channel failed the quality thresholds. Exclude it by name, change the threshold, or record it "
        "again."},
       {"bad-curve", "A muscle curve was given parameters for which it does not exist."},
+      {"bad-fibre",
+       "A fibre direction cannot be used: it is zero or not of unit length, neighbours cancel, or the function "
+       "that fibres follow is flat there. The message names the place."},
+      {"bad-fraction",
+       "A fraction of tissue lies outside [0, 1]; the message names the point or cell."},
       {"bad-geometry",
        "The table or polynomial of a muscle path is not usable: too few knots, angles that do not rise, or "
        "missing coefficients."},
+      {"bad-harmonic-fibres",
+       "Harmonic fibres need an origin and an insertion that do not touch, and every connected part of the "
+       "body needs faces of both."},
       {"bad-layout", "The declared layout of a file contradicts itself or the file."},
+      {"bad-mesh-field", "A field of the mesh has the wrong number of components or of entries."},
       {"bad-mesh-option",
        "A size, count or grading of a generated mesh is outside what a mesh can be made with; the message "
        "gives the allowed range."},
@@ -115,6 +124,8 @@ const std::vector<ErrorCode>& error_codes() {
        "The program broke down by itself. This is a defect of the program, not of your input."},
       {"interrupted",
        "The run was stopped from outside. Outputs that are complete are kept; run it again to go on."},
+      {"inverted-cell",
+       "A cell of the mesh is turned inside out or has no volume; the message names it. Mend the mesh."},
       {"inverted-cells",
        "Cells of a mesh are inverted: their volume is negative somewhere. All of them: the mesh is mirrored "
        "or its nodes are in another order; some: mesh finer there, or straighten curved edges."},
@@ -176,6 +187,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"missing-group", "An HDF5 file lacks a group that its format demands."},
       {"missing-input", "A stage needs an input that is not wired. Add it to `input` of the stage."},
       {"missing-key", "A key that must be there is absent."},
+      {"missing-mesh-field",
+       "The mesh brings no field of that name along; the message gives the nearest."},
       {"missing-moment", "The trial has no measured joint moment to compare with or to calibrate against."},
       {"missing-muscle", "The scene or subject has no muscle of that name."},
       {"missing-option", "A stage has an option without a default; give it a value."},
@@ -266,6 +279,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"trained-and-judged",
        "A trial was used for both training and judgement; its error is not that of an unseen trial."},
       {"trial-too-short", "A trial is shorter than the filter or window needs."},
+      {"twice-given",
+       "Two rules give the same thing for one region of a mesh. Let each region be named once."},
       {"undriven-muscle", "A muscle has no channel and no rule; it is passive."},
       {"undriven-source", "A rule drives a muscle by another one that has no excitation."},
       {"unequal-time-stamps", "Signals of one storage file must share their time stamps."},

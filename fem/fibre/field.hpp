@@ -1,5 +1,6 @@
 #pragma once
-/// Fibre directions and blending of tissues at the quadrature points of all cells, as the assembly reads them.
+/// Fibre directions and blending of tissues at the quadrature points of all cells, as the assembly reads
+/// them.
 
 #include <Eigen/Core>
 
