@@ -1,0 +1,56 @@
+#pragma once
+/// The walk along the programme: one load step after another, cut where Newton fails, grown where it is quick.
+///
+/// A step that fails is halved. After `cuts_before_relaxation` halvings in a row (or at the smallest step) the state is
+/// continued by viscous flow, where options ask for it; else the solve ends with its reason. Every number is bounded.
+/// A step that needed at most 4 factorisations doubles the next, at most 7 leaves it a quarter longer, more than 10 makes
+/// it a third shorter.
+
+#include <string>
+
+#include "fem/solve/newton.hpp"
+#include "fem/solve/programme.hpp"
+
+namespace brachium::fem {
+
+class Stepper {
+ public:
+  Stepper(const Problem& problem, const SolveOptions& options, const Observer& observer, const Progress& progress);
+
+  Summary run(const SolveState* restart);
+
+ private:
+  struct Attempt {
+    bool accepted = false;
+    std::string reason;
+    Configuration configuration;
+    Evaluation last;
+    Stability stability;
+  };
+  const Problem& problem_;
+  const SolveOptions& options_;
+  const Observer& observer_;
+  const Progress& progress_;
+  Programme programme_;
+  Equations equations_;
+  TangentFactor factor_;
+  SolveState state_;
+  Summary summary_;
+
+  void restore(const SolveState& restart);
+  std::string begin_phase();
+  std::string walk_phase();
+  std::string take_step();
+  std::string after_failure(Attempt& attempt, double h, double time, StepRecord& record, bool& again);
+  Attempt try_newton(double time, StepRecord& record);
+  Attempt try_relaxation(double time, StepRecord& record);
+  bool wants_stability(double time) const;
+  Configuration first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record, Eigen::MatrixXd& pressure);
+  std::string judge_stability(Attempt& attempt, double time, StepRecord& record);
+  void accept(Attempt& attempt, double time, StepRecord& record);
+  void count(const NewtonOutcome& outcome, StepRecord& record);
+  void collect(double seconds);
+  std::string place(double time) const;
+};
+
+}  // namespace brachium::fem
