@@ -37,7 +37,9 @@ const std::vector<ParameterSet<FibrousTissue>>& fibrous_tissue_sets() {
        "c2M, c3M in MPa, c4M",
        {3.56463903963e4, 3.859558659683e3, 3.05907e-4, 47.270456264135881}},
       {"sprenger_tendon",
-       "Valentin 2019, ch. 7, tendon of the upper-limb model; digits as printed, the unit MPa inferred",
+       "tendon beside sprenger_muscle in public code that names the same thesis as its source; digits as "
+       "read "
+       "there, the unit MPa is inferred and no published table was at hand",
        {2.31e6, 1.15, 7.99e6, 16.6}},
   };
   return sets;
