@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "data/model/units.hpp"
+#include "pipelines/report/thin.hpp"
 
 namespace brachium::pipelines::report {
 
@@ -70,30 +71,65 @@ Tone threshold_tone(double value, double good, double bad) {
   return Tone::bad;
 }
 
+namespace {
+
+/// Values as stored times this are in `unit` (units here have no offsets).
+double factor_to(const std::string& unit, const data::SignalInfo& info) {
+  return unit.empty() || unit == info.unit ? 1.0 : data::convert(1.0, info.unit, unit);
+}
+
+std::string label_of(const data::SignalInfo& info) {
+  return info.muscle.empty() ? info.name : info.muscle;
+}
+
+std::string axis_label(const std::string& quantity_name, const std::string& unit) {
+  return unit.empty() || unit == "1" ? quantity_name : quantity_name + " [" + unit + "]";
+}
+
+}  // namespace
+
 Series make_series(const data::Signal& signal, const std::string& label, const std::string& unit,
                    Style style) {
-  const bool as_stored = unit.empty() || unit == signal.info.unit;
-  const double factor =
-      as_stored ? 1.0 : data::convert(1.0, signal.info.unit, unit);  // units here have no offsets
+  const double factor = factor_to(unit, signal.info);
   Series series{.label = label, .style = style};
   series.x.reserve(signal.samples.size());
   series.y.reserve(signal.samples.size());
   for (std::size_t i = 0; i < signal.samples.size(); ++i) {
     series.x.push_back(signal.info.time_s(i));
-    series.y.push_back(as_stored ? signal.samples[i] : factor * signal.samples[i]);
+    series.y.push_back(factor * signal.samples[i]);
+  }
+  return series;
+}
+
+Series make_series(const data::SessionSource& source, std::size_t trial, std::size_t signal,
+                   const std::string& label, const std::string& unit, Style style) {
+  const data::SignalInfo& info = source.info().trials.at(trial).signals.at(signal);
+  if (info.count <= 4 * long_series) return make_series(source.signal(trial, signal), label, unit, style);
+  const double factor = factor_to(unit, info);
+  Series series{.label = label, .style = style};
+  std::vector<double> samples;
+  for (std::size_t piece = 0; piece < long_series; ++piece) {
+    const std::size_t first = piece * info.count / long_series, end = (piece + 1) * info.count / long_series;
+    samples.resize(end - first);
+    source.read(trial, signal, first, samples);
+    // A piece is one column of pixels: positions in it do not matter.
+    for (const std::size_t i : thin_line(std::vector<double>(samples.size(), 0.5), samples)) {
+      series.x.push_back(info.time_s(first + i));
+      series.y.push_back(factor * samples[i]);
+    }
   }
   return series;
 }
 
 Plot make_time_plot(const std::string& title, const std::string& quantity_name,
-                    std::span<const data::Signal* const> signals, const std::string& unit) {
+                    const data::SessionSource& source, std::size_t trial,
+                    std::span<const std::size_t> signals, const std::string& unit) {
+  const std::vector<data::SignalInfo>& infos = source.info().trials.at(trial).signals;
   Plot plot{.title = title, .x_label = "time [s]"};
-  for (const data::Signal* signal : signals) {
-    const std::string& label = signal->info.muscle.empty() ? signal->info.name : signal->info.muscle;
-    plot.series.push_back(make_series(*signal, label, unit));
-  }
-  const std::string shown = !unit.empty() || signals.empty() ? unit : signals.front()->info.unit;
-  plot.y_label = shown.empty() || shown == "1" ? quantity_name : quantity_name + " [" + shown + "]";
+  for (const std::size_t s : signals)
+    plot.series.push_back(make_series(source, trial, s, label_of(infos.at(s)), unit));
+  plot.y_label =
+      axis_label(quantity_name, !unit.empty() || signals.empty() ? unit : infos.at(signals.front()).unit);
   return plot;
 }
 

@@ -4,12 +4,14 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "data/model/error.hpp"
+#include "data/model/session.hpp"
 #include "data/model/signal.hpp"
 #include "data/model/table.hpp"
 #include "pipelines/report/document.hpp"
@@ -46,6 +48,7 @@ struct GridOptions {
   std::map<std::string, std::function<Tone(const std::string&)>> text_tone{};  ///< by column name
   std::vector<std::string> columns{};  ///< which and in which order; empty: all
   bool verdicts = true;                ///< verdict_tone on text columns without a rule
+  std::string undefined = "–";         ///< shown for NaN
 };
 
 /// A data table as a grid; names in words, units in the header: "rmse_N_m" is "RMSE [N m]"; captions start
@@ -59,10 +62,18 @@ Grid make_grid(const data::Table& table, const GridOptions& options = {});
 Series make_series(const data::Signal& signal, const std::string& label, const std::string& unit = "",
                    Style style = Style::line);
 
+/// The same read piece by piece from a source. A signal of more than 4 x long_series samples is thinned on
+/// the way: of each of long_series equal pieces the first, last, lowest and highest sample are kept
+/// (thin.hpp), so that the memory it takes does not grow with the length of the recording.
+Series make_series(const data::SessionSource& source, std::size_t trial, std::size_t signal,
+                   const std::string& label, const std::string& unit = "", Style style = Style::line);
+inline constexpr std::size_t long_series = 4096;
+
 /// Time series of one quantity: x is "time [s]", y is `quantity_name [unit]`. Labels are muscle names, else
 /// signal names.
 Plot make_time_plot(const std::string& title, const std::string& quantity_name,
-                    std::span<const data::Signal* const> signals, const std::string& unit = "");
+                    const data::SessionSource& source, std::size_t trial,
+                    std::span<const std::size_t> signals, const std::string& unit = "");
 
 /// Measured and modelled values of one quantity on the same frames.
 struct Pair {
@@ -77,15 +88,14 @@ struct Pair {
 struct AgreementFigures {
   std::size_t frames = 0;
   double rmse = 0.0, mean_absolute = 0.0, largest = 0.0;  ///< in the unit of the values
-  double nrmse = 0.0;                                     ///< rmse / (largest - smallest measured)
-  double r_squared =
-      0.0;            ///< 1 - sum residual^2 / sum (measured - mean)^2: negative when worse than the mean
-  double bias = 0.0;  ///< mean residual
+  /// rmse / (largest - smallest measured), and 1 - sum residual^2 / sum (measured - mean)^2, negative when
+  /// worse than the mean; none where the measured values do not vary.
+  std::optional<double> nrmse, r_squared;
+  double bias = 0.0;       ///< mean residual
   double deviation = 0.0;  ///< standard deviation of the residual, n - 1
 };
 
-/// Needs 2 frames with both values finite and measured values that vary: InputError("no-common-frames"),
-/// InputError("zero-variance").
+/// Needs 2 frames with both values finite: InputError("no-common-frames").
 AgreementFigures agreement_figures(std::span<const double> measured, std::span<const double> modelled);
 
 /// Measured (line) and modelled (dashed) over time with the residual under them, figures in the note.

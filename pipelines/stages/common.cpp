@@ -156,6 +156,8 @@ const data::Coordinate& coordinate_of(const data::Scene& scene, const std::strin
                          "add `coordinate = \"...\"` to the stage");
 }
 
+std::string figure_text(const std::optional<double>& value, int decimals) { return value ? fmt::format("{:.{}f}", *value, decimals) : undefined_text; }
+
 TableBuilder::TableBuilder(std::string title) { table_.title = std::move(title); }
 
 TableBuilder& TableBuilder::number(const std::string& name, const std::string& unit) {
@@ -185,12 +187,10 @@ report::PlotRow trial_plots(const data::SessionSource& source, const std::vector
   row.min_width_px = 320.0;
   for (const std::string& name : trials) {
     const std::size_t t = source.info().trial_index(name);
-    std::vector<data::Signal> signals;
-    for (const std::size_t s : signals_of(source.info().trials[t], quantity)) signals.push_back(source.signal(t, s));
+    const std::vector<std::size_t> signals = signals_of(source.info().trials[t], quantity);
     if (signals.empty()) continue;
-    std::vector<const data::Signal*> pointers;
-    for (const data::Signal& s : signals) pointers.push_back(&s);
-    report::Plot plot = report::make_time_plot(name, what, pointers, unit.empty() && signals.front().info.unit == "V" ? "µV" : unit);
+    const bool volt = source.info().trials[t].signals[signals.front()].unit == "V";
+    report::Plot plot = report::make_time_plot(name, what, source, t, signals, unit.empty() && volt ? "µV" : unit);
     for (std::size_t s = 0; s < plot.series.size(); ++s) plot.series[s].colour = static_cast<int>(s % 8);
     // Muscles that share an excitation lie on one another: one line with all their names.
     for (std::size_t s = 0; s < plot.series.size(); ++s) {

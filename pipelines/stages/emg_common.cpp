@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "data/model/parallel.hpp"
 #include "pipelines/stages/common.hpp"
 
 namespace brachium::pipelines {
@@ -36,6 +37,15 @@ std::vector<std::string> excluded_channels(const StageData* quality) {
   std::istringstream list(found->second);
   for (std::string name; std::getline(list, name, ',');) names.push_back(name);
   return names;
+}
+
+std::size_t threads_within_budget(std::size_t threads, const data::SessionInfo& session, const std::vector<std::string>& trials) {
+  std::size_t longest = 1;
+  for (const data::TrialInfo& trial : session.trials) {
+    if (std::find(trials.begin(), trials.end(), trial.name) == trials.end()) continue;
+    for (const std::size_t s : signals_of(trial, data::Quantity::emg)) longest = std::max(longest, trial.signals[s].count * sizeof(double));
+  }
+  return std::clamp<std::size_t>(sample_budget_bytes / longest, 1, data::thread_count(threads));
 }
 
 std::vector<OptionSpec> conditioning_option_specs() {

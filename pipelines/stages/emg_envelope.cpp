@@ -14,11 +14,10 @@
 #include "emg/rest_level.hpp"
 #include "pipelines/stages/common.hpp"
 #include "pipelines/stages/emg_common.hpp"
+#include "pipelines/stages/emg_envelope_report.hpp"
 
 namespace brachium::pipelines {
 namespace {
-
-constexpr std::size_t memory_budget_bytes = std::size_t{96} << 20;  // of samples in work at any time, all threads together
 
 emg::ConditioningOptions envelope_options(const Options& o) {
   emg::ConditioningOptions c = conditioning_options(o);
@@ -38,16 +37,18 @@ void condition_by_groups(const emg::ConditioningChain& chain, const data::Sessio
   const data::TrialInfo& trial = source.info().trials[t];
   const std::size_t count = trial.signals[channels.front()].count;
   const std::size_t group = std::clamp<std::size_t>(budget_bytes / std::max<std::size_t>(1, count * sizeof(double)), 1, 8);
+  std::vector<std::vector<double>> samples(std::min(group, channels.size()));
   for (std::size_t first = 0; first < channels.size(); first += group) {
     const std::size_t last = std::min(channels.size(), first + group);
-    std::vector<std::vector<double>> samples;
     std::vector<std::span<double>> spans;
     std::vector<std::string> names;
     for (std::size_t c = first; c < last; ++c) {
-      samples.push_back(source.read(t, channels[c]));
+      std::vector<double>& memory = samples[c - first];
+      memory.resize(count);
+      source.read(t, channels[c], 0, memory);
+      spans.emplace_back(memory);
       names.push_back(trial.signals[channels[c]].name);
     }
-    for (std::vector<double>& s : samples) spans.emplace_back(s);
     const emg::OutputLayout layout = emg::condition(chain, spans, names, trial.name);
     for (std::size_t c = first; c < last; ++c) {
       take(trial.signals[channels[c]], spans[c - first].subspan(0, layout.count), layout);
@@ -90,7 +91,7 @@ std::map<std::string, emg::NormalisationReference> find_references(const StageCo
     const data::TrialInfo& trial = input.signals->info().trials[t];
     const std::vector<std::size_t> channels = plan.channels(trial);
     const emg::ConditioningChain chain = plan.chain(trial, channels);
-    condition_by_groups(chain, *input.signals, t, channels, memory_budget_bytes,
+    condition_by_groups(chain, *input.signals, t, channels, sample_budget_bytes,
                         [&](const data::SignalInfo& raw, std::span<double> envelope, const emg::OutputLayout& layout) {
                           if (!rest.empty()) emg::remove_rest(envelope, rest_of(rest, raw.name));
                           const auto [search, added] = searches.try_emplace(raw.name, raw.name, options);
@@ -121,7 +122,7 @@ std::map<std::string, double> find_rest(const StageContext& context, const Stage
     const std::size_t t = trial_index(input, name);
     const data::TrialInfo& trial = input.signals->info().trials[t];
     const std::vector<std::size_t> channels = plan.channels(trial);
-    condition_by_groups(plan.chain(trial, channels), *input.signals, t, channels, memory_budget_bytes,
+    condition_by_groups(plan.chain(trial, channels), *input.signals, t, channels, sample_budget_bytes,
                         [&](const data::SignalInfo& raw, std::span<double> envelope, const emg::OutputLayout&) {
                           auto& [sum, count] = sums[raw.name];
                           for (const double e : envelope) sum += e;
@@ -154,17 +155,16 @@ data::Table step_table(const emg::ConditioningChain& chain, const data::SessionS
   const data::TrialInfo& trial = source.info().trials[t];
   const data::SignalInfo& info = trial.signals[signal];
   std::vector<double> samples = source.read(t, signal);
-  std::vector<std::string> names{info.name};
-  std::vector<double> work = samples;
-  std::vector<std::span<double>> span{work};
+  const std::vector<std::string> names{info.name};
+  const std::vector<std::span<double>> span{samples};
   const emg::OutputLayout layout = emg::condition(chain, span, names, trial.name);
-  const auto peak = std::max_element(work.begin(), work.begin() + static_cast<std::ptrdiff_t>(layout.count)) - work.begin();
+  const auto peak = std::max_element(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(layout.count)) - samples.begin();
   const double stride = chain.rate_hz / chain.output_rate_hz;
   const auto centre = static_cast<std::size_t>(static_cast<double>(layout.first) + static_cast<double>(peak) * stride);
   emg::ConditioningSteps steps;
   steps.count = std::min(info.count, static_cast<std::size_t>(window_s * info.rate_hz));
   steps.first = std::min(centre - std::min(centre, steps.count / 2), info.count - steps.count);
-  span = {samples};
+  source.read(t, signal, 0, samples);  // again: it was worked on in place
   emg::condition(chain, span, names, trial.name, &steps);
   TableBuilder table(fmt::format("conditioning of `{}` in trial `{}`", info.name, trial.name));
   table.number("time_s", "s").number("raw_V", info.unit).number("offset_removed_V", info.unit).number("filtered_V", info.unit)
@@ -230,13 +230,13 @@ void run(const StageContext& context, StageOutput& out) {
   std::vector<std::vector<TrialExcess>> excesses(context.trials.size());
   std::vector<double> lost_start(context.trials.size()), lost_end(context.trials.size());
   std::atomic<std::size_t> done{0};
-  const std::size_t threads = data::thread_count(context.threads);
+  const std::size_t threads = threads_within_budget(context.threads, input.signals->info(), context.trials);
   data::parallel_for(context.trials.size(), threads, [&](std::size_t i) {
     const std::size_t t = trial_index(input, context.trials[i]);
     const data::TrialInfo& trial = input.signals->info().trials[t];
     const std::vector<std::size_t> channels = plan.channels(trial);
     const emg::ConditioningChain chain = plan.chain(trial, channels);
-    condition_by_groups(chain, *input.signals, t, channels, memory_budget_bytes / std::min(threads, context.trials.size()),
+    condition_by_groups(chain, *input.signals, t, channels, sample_budget_bytes / std::min(threads, context.trials.size()),
                         [&](const data::SignalInfo& raw, std::span<double> envelope, const emg::OutputLayout& layout) {
                           data::SignalInfo info = raw;
                           info.quantity = data::Quantity::excitation;
@@ -302,93 +302,6 @@ void run(const StageContext& context, StageOutput& out) {
                                           *std::max_element(lost_end.begin(), lost_end.end()));
 }
 
-void fill(const ReportContext& context, report::Section& section) {
-  const StageData& output = *context.output;
-  section.title += ": linear envelopes";
-  report::GridOptions filters;
-  filters.names = {{"effective_order", "order"}, {"edges_at_minus_3_dB_Hz", "−3 dB edges [Hz]"}, {"group_delay_s", "delay"}, {"transient_s", "transient"}};
-  filters.words = {"filter"};
-  filters.decimals = {{"group_delay_s", 3}, {"transient_s", 3}};
-  section.blocks.push_back(report::make_grid(output.tables.at("filters"), filters));
-  if (const auto trimmed = output.attributes.find("trimmed"); trimmed != output.attributes.end()) {
-    section.blocks.push_back(report::Paragraph{"Left out because the filters' transients reach there: " + trimmed->second + "."});
-  }
-  if (output.tables.contains("normalisation")) {
-    report::GridOptions grid;
-    grid.words = {"method"};
-    grid.digits = 3;
-    grid.decimals = {{"time_s", 2}, {"window_s", 2}};
-    grid.names = {{"time_s", "from"}, {"window_s", "window"}, {"reference_V", "reference"}, {"rest_V", "rest"}};
-    for (const data::Column& column : output.tables.at("normalisation").columns) {
-      if (column.name.ends_with("_V")) grid.units[column.name] = "µV";
-    }
-    section.blocks.push_back(report::make_grid(output.tables.at("normalisation"), grid));
-  }
-  if (output.tables.contains("above_one")) {
-    report::GridOptions brief;
-    brief.columns = {"trial", "channel", "samples", "maximum", "time_of_maximum_s"};
-    brief.decimals = {{"maximum", 3}, {"time_of_maximum_s", 2}};
-    section.blocks.push_back(report::make_grid(output.tables.at("above_one"), brief));
-    report::Section folded;
-    report::GridOptions all;
-    all.columns = {"trial", "channel", "intervals_s"};
-    all.names = {{"intervals_s", "intervals [s]"}};
-    folded.blocks.push_back(report::make_grid(output.tables.at("above_one"), all));
-    section.blocks.push_back(report::Details{"when the excitation is above 1", {folded}});
-  }
-  report::PlotRow steps;
-  std::string shown;
-  steps.min_width_px = 320.0;
-  for (const auto& [name, table] : output.tables) {
-    if (!name.starts_with("steps_")) continue;
-    const auto scaled = [&table](const char* column) {
-      std::vector<double> v = table.numbers(column);
-      for (double& x : v) x *= 1e6;
-      return v;
-    };
-    const std::vector<double>& time = table.numbers("time_s");
-    report::Plot top;
-    const std::string channel = name.substr(std::string("steps_").size());
-    top.title = channel;
-    shown = table.title;  // "conditioning of `channel` in trial `trial`"
-    top.x_label = "time [s]";
-    top.y_label = "EMG [µV]";
-    top.series = {{"raw", time, scaled("raw_V"), report::Style::line, 6}, {"filtered", time, scaled("filtered_V"), report::Style::line, 0}};
-    top.height_px = 130.0;
-    report::Plot bottom;
-    bottom.y_label = "EMG [µV]";
-    bottom.series = {{"rectified", time, scaled("rectified_V"), report::Style::line, 5}, {"envelope", time, scaled("envelope_V"), report::Style::line, 1}};
-    bottom.height_px = 130.0;
-    top.below.push_back(bottom);
-    steps.plots.push_back(std::move(top));
-  }
-  if (const std::size_t at = shown.find("in trial"); at != std::string::npos) {
-    section.blocks.push_back(report::Paragraph{"Conditioning step by step, each channel around its largest envelope " + shown.substr(at) + ":"});
-  }
-  section.blocks.push_back(steps);
-  std::vector<std::string> trials;
-  for (const data::TrialInfo& trial : output.signals->info().trials) trials.push_back(trial.name);
-  section.blocks.push_back(trial_plots(*output.signals, trials, data::Quantity::excitation, "excitation"));
-}
-
-std::string methods(const ReportContext& context) {
-  const Options& o = *context.options;
-  const bool zero_lag = o.text("phase") == "zero_lag";
-  const auto order = [&](const char* key) { return o.integer(key) * (zero_lag ? 2 : 1); };
-  const std::string band = o.number("band_high_hz") > 0
-                               ? fmt::format("band-pass filtered {:g} to {:g} Hz (Butterworth, effective order {})", o.number("highpass_hz"), o.number("band_high_hz"), order("band_order"))
-                               : fmt::format("high-pass filtered at {:g} Hz (Butterworth, effective order {})", o.number("highpass_hz"), order("band_order"));
-  const std::string notch = o.number("notch_hz") > 0 ? fmt::format(", notched at {:g} Hz and harmonics", o.number("notch_hz")) : "";
-  const std::string edges = o.text("cutoff") == "per_pass" ? "cut-offs are those of one pass" : "cut-offs are the −3 dB edges after all passes";
-  std::string norm = "not normalised (a gain per channel is part of the calibration)";
-  if (o.text("normalise") == "mvc") norm = fmt::format("normalised by the largest {:g} s mean of the maximum voluntary contractions", o.number("reference_window_s"));
-  if (o.text("normalise") == "trials_maximum") norm = fmt::format("normalised by the largest {:g} s mean of the trials themselves, for want of a maximum voluntary contraction", o.number("reference_window_s"));
-  if (o.boolean("correct_reference_bias")) norm += ", less the expected excess of a maximum over the mean";
-  if (o.boolean("subtract_rest")) norm += ", after the envelope at rest had been taken off in the mean square";
-  return fmt::format("EMG was {}{}, full-wave rectified, low-pass filtered at {:g} Hz (Butterworth, effective order {}), {}; {} The linear envelope was {}.", band, notch,
-                     o.number("lowpass_hz"), order("lowpass_order"), zero_lag ? "forward and backward without lag" : "causally", edges + ".", norm);
-}
-
 }  // namespace
 
 void add_emg_envelope(Catalogue& catalogue) {
@@ -422,8 +335,8 @@ void add_emg_envelope(Catalogue& catalogue) {
   };
   for (const OptionSpec& o : more) spec.options.push_back(o);
   spec.run = run;
-  spec.report = fill;
-  spec.methods = methods;
+  spec.report = fill_envelope_report;
+  spec.methods = envelope_methods;
   catalogue.add(std::move(spec));
 }
 

@@ -52,7 +52,7 @@ void run(const StageContext& context, StageOutput& out) {
   select(excluded_by_name, {channels.begin(), channels.end()}, "EMG channel");  // a name that is not there is a mistake
 
   std::vector<emg::ChannelQuality> rows(tasks.size());
-  data::parallel_for(tasks.size(), context.threads, [&](std::size_t i) {
+  data::parallel_for(tasks.size(), threads_within_budget(context.threads, input.signals->info(), context.trials), [&](std::size_t i) {
     const data::TrialInfo& trial = input.signals->info().trials[tasks[i].trial];
     const data::Signal signal = input.signals->signal(tasks[i].trial, tasks[i].signal);
     rows[i] = emg::assess(signal.samples, signal.info.rate_hz, trial.name, signal.info.name, thresholds);
