@@ -385,7 +385,6 @@ const std::vector<ErrorCode>& error_codes() {
        "A number is given in a unit of another dimension, or a key carries another unit than the option "
        "has."},
       {"wrong-version", "A file was written by another version of the program with another layout."},
-      {"zero-variance", "A series does not vary, so that no measure of agreement exists."},
       {"zero-variance-moment",
        "The measured moment does not vary, so that nothing can be calibrated against it."},
   };

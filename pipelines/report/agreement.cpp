@@ -46,9 +46,11 @@ std::vector<double> residuals(const Pair& pair) {
 std::string figures_sentence(const Pair& pair) {
   try {
     const AgreementFigures f = agreement_figures(pair.measured, pair.modelled);
-    return "RMSE " + quantity(f.rmse, pair.unit, 3) + ", NRMSE " + percent(f.nrmse, 3) + ", R² " +
-           fixed(f.r_squared, 3) + ", bias " + quantity(f.bias, pair.unit, 3) + ", largest " +
-           quantity(f.largest, pair.unit, 3) + ", " + std::to_string(f.frames) + " frames.";
+    const std::string relative = f.nrmse && f.r_squared
+                                     ? ", NRMSE " + percent(*f.nrmse, 3) + ", R² " + fixed(*f.r_squared, 3)
+                                     : ", NRMSE and R² not defined, since the measured values do not vary";
+    return "RMSE " + quantity(f.rmse, pair.unit, 3) + relative + ", bias " + quantity(f.bias, pair.unit, 3) +
+           ", largest " + quantity(f.largest, pair.unit, 3) + ", " + std::to_string(f.frames) + " frames.";
   } catch (const data::InputError& error) {
     return "No figures of agreement: " + error.diagnostics().front().message + ".";
   }
@@ -95,11 +97,12 @@ AgreementFigures agreement_figures(std::span<const double> measured, std::span<c
     sum_spread += (measured[i] - mean) * (measured[i] - mean);
     sum_deviation += (residual - f.bias) * (residual - f.bias);
   }
-  if (!(highest > lowest)) throw data::InputError("zero-variance", "the measured values do not vary");
   f.rmse = std::sqrt(sum_square / n);
   f.mean_absolute = sum_absolute / n;
-  f.nrmse = f.rmse / (highest - lowest);
-  f.r_squared = 1.0 - sum_square / sum_spread;
+  if (highest > lowest) {
+    f.nrmse = f.rmse / (highest - lowest);
+    f.r_squared = 1.0 - sum_square / sum_spread;
+  }
   f.deviation = std::sqrt(sum_deviation / (n - 1.0));
   return f;
 }

@@ -40,9 +40,10 @@ std::vector<Cell> number_cells(const data::Column& column, const GridOptions& op
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const int* decimals = find(options.decimals, column.name);
-    const std::string text = decimals ? fixed(values[i], *decimals)
-                             : whole  ? fixed(values[i], 0)
-                                      : significant(values[i], own ? *own : options.digits);
+    const std::string text = std::isnan(values[i]) ? options.undefined
+                             : decimals            ? fixed(values[i], *decimals)
+                             : whole               ? fixed(values[i], 0)
+                                                   : significant(values[i], own ? *own : options.digits);
     cells.push_back({.text = text, .tone = tones[i], .numeric = true});
   }
   return cells;

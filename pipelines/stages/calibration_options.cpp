@@ -77,6 +77,9 @@ std::vector<OptionSpec> calibration_option_specs() {
       integer_option("max_iterations", 200, between(1, 100000), "of one start"),
       optional_number("scale_N_m", "N m", above(0), "what a residual is divided by; default: the standard deviation of the training trials' moment"),
       number_option("edge_s", "s", 0.5, at_least(0), "left out at both ends of each trial"),
+      optional_number("independent_rate_hz", "Hz", above(0),
+                      "independent residuals a second: below the reference's rate it weighs the data down against priors, whatever the rate of recording; "
+                      "default: every residual counts"),
       integer_option("decimate", 1, between(1, 1000), "use every n-th sample of the reference moment"),
       optional_number("excitation_cv", "", at_least(0), "coefficient of variation of the envelopes' noise; default: from the EMG's band and the envelope's cut-off; 0: none"),
       number_option("emg_band_low_hz", "Hz", 30.0, above(0), "lower edge of the conditioned EMG's band, for that noise"),
@@ -110,6 +113,7 @@ optimise::CalibrationOptions calibration_options(const StageContext& context, co
   for (const Options& g : o.tables("gain")) c.problem.channel_gains[g.text("channel")] = g.number("value");
   c.problem.scale_N_m = o.maybe_number("scale_N_m");
   c.problem.edge_s = o.number("edge_s");
+  c.problem.independent_rate_hz = o.maybe_number("independent_rate_hz");
   c.problem.decimate = static_cast<std::size_t>(o.integer("decimate"));
   c.problem.threads = context.threads;
   c.linear_strength_first = o.boolean("linear_strength_first");
@@ -160,16 +164,26 @@ data::Signal moment_signal(const std::string& name, const std::string& coordinat
   return signal;
 }
 
+void add_calibration_findings(const std::vector<data::Diagnostic>& found, const data::Subject& subject, StageOutput& out) {
+  for (data::Diagnostic d : found) {
+    for (const data::ParameterVerdict& v : subject.verdicts) {
+      const std::string label = v.muscle + " " + v.parameter, name = report::label_of_name(v.parameter, v.unit);
+      const std::string words = (v.muscle == "*" ? "common" : v.muscle) + " " + name.substr(0, name.find(" ["));
+      for (std::size_t at = d.message.find(label); at != std::string::npos; at = d.message.find(label, at + words.size())) d.message.replace(at, label.size(), words);
+    }
+    out.diagnostics.push_back(std::move(d));
+  }
+}
+
 void add_calibration_tables(const optimise::CalibrationResult& result, StageOutput& out) {
   out.tables["verdicts"] = optimise::verdict_table(result.subject);
   TableBuilder fit("training trials");
   fit.text("trial").number("frames", "1").number("rmse_N_m", "N m").number("nrmse_range", "1").number("r2", "1").number("bias_N_m", "N m").number("first_s", "s").number("last_s", "s")
       .number("left_out", "1");
-  const double none = 0.0;
   for (std::size_t i = 0; i < result.windows.size(); ++i) {
     const optimise::TrialWindow& w = result.windows[i];
     const optimise::Metrics& m = result.trial_metrics[i];
-    fit.row({w.name, static_cast<double>(m.count), m.rmse, m.nrmse_range.value_or(none), m.r2.value_or(none), m.bias, w.first_time_s, w.last_time_s,
+    fit.row({w.name, static_cast<double>(m.count), m.rmse, or_undefined(m.nrmse_range), or_undefined(m.r2), m.bias, w.first_time_s, w.last_time_s,
              static_cast<double>(w.before + w.after + w.masked)});
   }
   out.tables["training"] = fit.take();
@@ -226,6 +240,7 @@ void add_calibration_report(const StageData& output, report::Section& section) {
   section.blocks.push_back(verdict_grid(output.tables.at("verdicts")));
   report::GridOptions training;
   training.digits = 3;
+  training.undefined = undefined_text;
   training.names = {{"nrmse_range", "NRMSE of the range"}, {"first_s", "from"}, {"last_s", "to"}, {"left_out", "frames left out"}};
   training.decimals = {{"first_s", 2}, {"last_s", 2}};
   section.blocks.push_back(report::make_grid(output.tables.at("training"), training));
@@ -259,7 +274,7 @@ std::string calibration_methods(const ReportContext& context) {
   }
   return fmt::format("The model was calibrated by bounded least squares ({}) with exact derivatives of the whole chain; free were {}. Standard errors allow for autocorrelated "
                      "residuals (Newey & West 1987, doi:10.2307/1913610) and for errors in the excitation by simulation (Cook & Stefanski 1994, "
-                     "doi:10.1080/01621459.1994.10476871).", o.text("solver"), fmt::join(free, ", "));
+                     "doi:10.1080/01621459.1994.10476871).", report::in_words(o.text("solver")), fmt::join(free, ", "));
 }
 
 }  // namespace brachium::pipelines

@@ -14,6 +14,9 @@ optimise::CalibrationOptions calibration_options(const StageContext& context, co
 
 /// Tables of one fit: verdicts, metrics by trial, windows, iterations.
 void add_calibration_tables(const optimise::CalibrationResult& result, StageOutput& out);
+/// A calibration's findings with its parameters in words: "biceps tendon_slack_length_factor" as "biceps tendon slack
+/// length factor".
+void add_calibration_findings(const std::vector<data::Diagnostic>& found, const data::Subject& subject, StageOutput& out);
 /// Verdicts as a reader wants them: fitted value beside its bounds and interval, the verdict in its colour.
 report::Grid verdict_grid(const data::Table& verdicts);
 void add_calibration_report(const StageData& output, report::Section& section);

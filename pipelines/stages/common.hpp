@@ -1,6 +1,8 @@
 #pragma once
 /// What the stages' bindings share: short ways to write specifications, and the headers of the sessions they write.
 
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +56,12 @@ std::vector<std::string> names_of(const data::TrialInfo& trial, const std::vecto
 const data::Coordinate& coordinate_of(const data::Scene& scene, const std::string& name);
 
 // ---------------------------------------------------------------- tables
+
+/// How a figure that may not be defined, such as R2 against a reference that does not vary, stands in a table (NaN:
+/// a number would claim something) and in a sentence.
+inline double or_undefined(const std::optional<double>& value) { return value.value_or(std::numeric_limits<double>::quiet_NaN()); }
+std::string figure_text(const std::optional<double>& value, int decimals);
+inline constexpr const char* undefined_text = "not defined";
 
 /// A table built row by row.
 class TableBuilder {

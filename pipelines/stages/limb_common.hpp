@@ -1,6 +1,9 @@
 #pragma once
 /// Stages over the rigid limb: motion, and the reference moment.
 
+#include <Eigen/Core>
+
+#include "data/model/resample.hpp"
 #include "pipelines/stage.hpp"
 
 namespace brachium::pipelines {
@@ -11,5 +14,9 @@ void add_limb_dynamometer(Catalogue& catalogue);
 
 /// The recorded angle of a coordinate: the signal that the scene names, else the trial's only joint angle of it.
 data::Signal recorded_angle(const StageData& input, const std::string& trial, const data::Coordinate& coordinate);
+
+/// Values on an even grid as a signal of a coordinate.
+data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity, const std::string& unit,
+                         const std::string& coordinate, const Eigen::VectorXd& values);
 
 }  // namespace brachium::pipelines

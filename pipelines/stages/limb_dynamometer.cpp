@@ -80,19 +80,6 @@ std::optional<limb::GravityModel> fit_sweep(const StageContext& context, const d
   return model;
 }
 
-data::Signal series(const data::TimeGrid& grid, const std::string& name, Quantity quantity, const std::string& unit, const std::string& coordinate, const Eigen::VectorXd& values) {
-  data::Signal signal;
-  signal.info.name = name;
-  signal.info.quantity = quantity;
-  signal.info.unit = unit;
-  signal.info.coordinate = coordinate;
-  signal.info.rate_hz = grid.rate_hz;
-  signal.info.start_time_s = grid.start_s;
-  signal.info.count = static_cast<std::size_t>(values.size());
-  signal.samples.assign(values.data(), values.data() + values.size());
-  return signal;
-}
-
 struct Row {
   std::string trial, phases;
   double largest, rms_gravity, rms_inertial, rms_sd, used;
@@ -128,14 +115,14 @@ Row run_trial(const StageContext& context, const data::Scene& scene, const data:
   const Eigen::VectorXd use = limb::phase_mask(phases, count);
   const auto rms = [count](const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(count)); };
 
-  data::Signal moment = series(record.grid, coordinate.name + "_moment", Quantity::joint_moment, "N m", coordinate.name, m.moment_N_m);
+  data::Signal moment = make_signal(record.grid, coordinate.name + "_moment", Quantity::joint_moment, "N m", coordinate.name, m.moment_N_m);
   moment.info.attributes["source"] = "dynamometer, gravity " + o.text("gravity");
   out.signals->write(name, moment);
-  out.signals->write(name, series(record.grid, coordinate.name, Quantity::joint_angle, "rad", coordinate.name, m.angle_rad));
-  out.signals->write(name, series(record.grid, coordinate.name + "_velocity", Quantity::joint_velocity, "rad/s", coordinate.name, record.joint.velocity_rad_per_s));
-  out.signals->write(name, series(record.grid, "use", Quantity::other, "1", coordinate.name, use));
-  out.signals->write(name, series(record.grid, "moment_sd", Quantity::other, "N m", coordinate.name, m.sd_N_m));
-  out.signals->write(name, series(record.grid, "gravity", Quantity::other, "N m", coordinate.name, m.gravity_N_m));
+  out.signals->write(name, make_signal(record.grid, coordinate.name, Quantity::joint_angle, "rad", coordinate.name, m.angle_rad));
+  out.signals->write(name, make_signal(record.grid, coordinate.name + "_velocity", Quantity::joint_velocity, "rad/s", coordinate.name, record.joint.velocity_rad_per_s));
+  out.signals->write(name, make_signal(record.grid, "use", Quantity::other, "1", coordinate.name, use));
+  out.signals->write(name, make_signal(record.grid, "moment_sd", Quantity::other, "N m", coordinate.name, m.sd_N_m));
+  out.signals->write(name, make_signal(record.grid, "gravity", Quantity::other, "N m", coordinate.name, m.gravity_N_m));
   std::string text = windows == "all" ? std::string("all") : std::to_string(phases.size());
   return {name, text, m.moment_N_m.cwiseAbs().maxCoeff(), rms(m.gravity_N_m), rms(m.inertial_N_m), rms(m.sd_N_m), use.mean()};
 }
@@ -182,7 +169,7 @@ std::string methods(const ReportContext& context) {
          (gravity == "passive_sweep" ? "by a sine and cosine fitted to a slow sweep of the relaxed limb (passive tissue is then part of the correction)"
           : gravity == "limb"        ? "of the limb's own masses"
                                      : "by the machine itself") +
-         " and for inertia (Winter, Wells & Orr 1981, doi:10.1007/BF02332769; Herzog 1988, doi:10.1016/0021-9290(88)90146-6).";
+         " and for inertia (Winter, Wells & Orr 1981, Eur J Appl Physiol 46, 397-408; Herzog 1988, J Biomech 21, 5-12).";
 }
 
 }  // namespace
@@ -195,8 +182,8 @@ void add_limb_dynamometer(Catalogue& catalogue) {
       "Brings a machine's angle, velocity and torque (signals of quantity dynamometer_angle, dynamometer_velocity, dynamometer_torque) to the joint: declared signs and zeros, gravity from a "
       "passive sweep or from the limb's masses, inertia in the ramps, and a joint centre beside the machine's axis to first order. `windows` keeps the stretches of constant velocity of isokinetic "
       "trials or the holds of isometric ones; the others are marked (signal `use`) and left out by calibration and verdict.\n"
-      "A fit to a passive sweep takes passive tissue for gravity: then a model's passive forces must not be fitted to the rest. Sources: Winter, Wells & Orr 1981, doi:10.1007/BF02332769; Herzog "
-      "1988, doi:10.1016/0021-9290(88)90146-6.\n"
+      "A fit to a passive sweep takes passive tissue for gravity: then a model's passive forces must not be fitted to the rest. Sources: Winter, Wells & Orr 1981, Eur J Appl Physiol 46, 397-408; Herzog "
+      "1988, J Biomech 21, 5-12.\n"
       "No public recording with raw EMG and a real dynamometer could be found: this stage is tested on synthetic records.";
   spec.needs_scene = true;
   spec.inputs = {{"signals", PortType::signals, "recordings with dynamometer signals", false, false, true}};

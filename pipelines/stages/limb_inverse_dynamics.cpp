@@ -133,19 +133,6 @@ Result run_trial(const StageContext& context, const data::Scene& scene, const da
   return result;
 }
 
-data::Signal series(const Result& r, const std::string& name, data::Quantity quantity, const std::string& coordinate, const Eigen::VectorXd& values) {
-  data::Signal signal;
-  signal.info.name = name;
-  signal.info.quantity = quantity;
-  signal.info.unit = "N m";
-  signal.info.coordinate = coordinate;
-  signal.info.rate_hz = r.grid.rate_hz;
-  signal.info.start_time_s = r.grid.start_s;
-  signal.info.count = static_cast<std::size_t>(values.size());
-  signal.samples.assign(values.data(), values.data() + values.size());
-  return signal;
-}
-
 void run(const StageContext& context, StageOutput& out) {
   const data::Scene& scene = context.need_scene();
   const data::Coordinate& coordinate = coordinate_of(scene, context.options->maybe_text("coordinate").value_or(""));
@@ -155,15 +142,13 @@ void run(const StageContext& context, StageOutput& out) {
   data::parallel_for(context.trials.size(), context.threads, [&](std::size_t i) {
     results[i] = run_trial(context, scene, coordinate, context.trials[i]);
     const Result& r = results[i];
-    data::Signal moment = series(r, coordinate.name + "_moment", data::Quantity::joint_moment, coordinate.name, r.moment.moment_N_m);
+    data::Signal moment = make_signal(r.grid, coordinate.name + "_moment", data::Quantity::joint_moment, "N m", coordinate.name, r.moment.moment_N_m);
     moment.info.attributes["source"] = "inverse dynamics, " + r.origin;
     out.signals->write(context.trials[i], moment);
-    out.signals->write(context.trials[i], series(r, "moment_sd", data::Quantity::other, coordinate.name, r.moment.sd_N_m));
-    data::Signal use = series(r, "use", data::Quantity::other, coordinate.name, r.moment.usable);
-    use.info.unit = "1";
-    out.signals->write(context.trials[i], use);
-    out.signals->write(context.trials[i], series(r, "gravity_part", data::Quantity::other, coordinate.name, r.moment.gravity_part_N_m));
-    out.signals->write(context.trials[i], series(r, "inertial_part", data::Quantity::other, coordinate.name, r.moment.inertial_part_N_m));
+    out.signals->write(context.trials[i], make_signal(r.grid, "moment_sd", data::Quantity::other, "N m", coordinate.name, r.moment.sd_N_m));
+    out.signals->write(context.trials[i], make_signal(r.grid, "use", data::Quantity::other, "1", coordinate.name, r.moment.usable));
+    out.signals->write(context.trials[i], make_signal(r.grid, "gravity_part", data::Quantity::other, "N m", coordinate.name, r.moment.gravity_part_N_m));
+    out.signals->write(context.trials[i], make_signal(r.grid, "inertial_part", data::Quantity::other, "N m", coordinate.name, r.moment.inertial_part_N_m));
     if (context.progress) context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()), context.trials[i]);
   });
 

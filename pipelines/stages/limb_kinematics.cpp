@@ -30,6 +30,20 @@ data::Signal recorded_angle(const StageData& input, const std::string& trial, co
   return signal_of(input, trial, data::Quantity::joint_angle, coordinate.name);
 }
 
+data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity, const std::string& unit, const std::string& coordinate,
+                         const Eigen::VectorXd& values) {
+  data::Signal signal;
+  signal.info.name = name;
+  signal.info.quantity = quantity;
+  signal.info.unit = unit;
+  signal.info.coordinate = coordinate;
+  signal.info.rate_hz = grid.rate_hz;
+  signal.info.start_time_s = grid.start_s;
+  signal.info.count = static_cast<std::size_t>(values.size());
+  signal.samples.assign(values.data(), values.data() + values.size());
+  return signal;
+}
+
 namespace {
 
 data::Signal like(const data::Signal& angle, const std::string& name, data::Quantity quantity, const std::string& unit, const data::Coordinate& coordinate,

@@ -51,7 +51,7 @@ void run(const StageContext& context, StageOutput& out) {
   result.subject.provenance["trials"] = fmt::format("{}", fmt::join(names, ","));
   result.subject.provenance["scene"] = scene.title;
   add_calibration_tables(result, out);
-  out.diagnostics.insert(out.diagnostics.end(), result.diagnostics.begin(), result.diagnostics.end());
+  add_calibration_findings(result.diagnostics, result.subject, out);
   out.subject = std::move(result.subject);
 }
 

@@ -107,7 +107,7 @@ data::Table stability_table(const optimise::CrossValidationResult& result) {
   return table.take();
 }
 
-std::string figures(const optimise::Metrics& m) { return fmt::format("R2 {:.3f}, RMSE {:.2f} N m", m.r2.value_or(0.0), m.rmse); }
+std::string figures(const optimise::Metrics& m) { return fmt::format("R2 {}, RMSE {:.2f} N m", figure_text(m.r2, 3), m.rmse); }
 
 void run(const StageContext& context, StageOutput& out) {
   const data::Scene& scene = context.need_scene();
@@ -131,7 +131,7 @@ void run(const StageContext& context, StageOutput& out) {
       .number("frames", "1");
   for (const optimise::ModelScore& m : result.models) {
     const optimise::Metrics &h = m.pooled_held_out, &t = m.pooled_training;
-    pooled.row({m.model, h.r2.value_or(0.0), h.rmse, h.nrmse_range.value_or(0.0), h.bias, t.r2.value_or(0.0), t.rmse, static_cast<double>(h.count)});
+    pooled.row({m.model, or_undefined(h.r2), h.rmse, or_undefined(h.nrmse_range), h.bias, or_undefined(t.r2), t.rmse, static_cast<double>(h.count)});
   }
   out.tables["pooled"] = pooled.take();
   const optimise::ModelScore& muscle = result.models.front();
@@ -151,7 +151,7 @@ void run(const StageContext& context, StageOutput& out) {
     }
     if (m > 0 && muscle.pooled_held_out.rmse < result.models[m].pooled_held_out.rmse) beaten.push_back(result.models[m].model);
   }
-  out.diagnostics.insert(out.diagnostics.end(), result.diagnostics.begin(), result.diagnostics.end());
+  add_calibration_findings(result.diagnostics, result.folds.front().calibration.subject, out);
   std::vector<std::string> others;
   for (std::size_t m = 1; m < result.models.size(); ++m) others.push_back(fmt::format("{} {}", report::in_words(result.models[m].model), figures(result.models[m].pooled_held_out)));
   out.attributes["verdict"] = fmt::format("On trials the calibration never saw: muscle model {}{}{}.", figures(muscle.pooled_held_out), others.empty() ? "" : "; regressions: ", fmt::join(others, "; "));
@@ -164,6 +164,7 @@ void fill(const ReportContext& context, report::Section& section) {
   if (const auto v = output.attributes.find("verdict"); v != output.attributes.end()) section.blocks.push_back(report::Paragraph{v->second});
   report::GridOptions grid;
   grid.digits = 3;
+  grid.undefined = undefined_text;
   grid.words = {"model", "by", "parameter"};
   grid.names = {{"nrmse_range", "NRMSE of the range"}, {"bias_N_m", "bias"}, {"training_r2", "R² in training"}, {"training_rmse_N_m", "RMSE in training"},
                 {"folds_at_bound", "folds at a bound"}, {"folds_not_identified", "folds not identified"}, {"owner", "of"}};

@@ -17,6 +17,8 @@
 namespace brachium::pipelines {
 namespace {
 
+constexpr const char* reference_name = "reference";
+
 struct Pair {
   std::vector<double> time, reference, modelled;
 };
@@ -34,6 +36,17 @@ Pair align(const data::Signal& reference, const std::vector<bool>& use, const da
   }
   if (!pair.time.empty()) pair.modelled = data::evaluate_at(model, pair.time);
   return pair;
+}
+
+/// Name of a model's signal in the output: its stage's, unless that is what the reference is called there.
+std::string signal_name(const StageContext& context, const StageData& model) {
+  std::vector<std::string> taken{reference_name};
+  for (const StageData* other : context.inputs.at("models")) {
+    if (other != &model) taken.push_back(other->stage);
+  }
+  std::string name = model.stage;
+  while (std::find(taken.begin(), taken.end(), name) != taken.end()) name += "_model";
+  return name;
 }
 
 std::vector<std::string> learnt_from(const StageContext& context) {
@@ -69,23 +82,23 @@ void run(const StageContext& context, StageOutput& out) {
       }
       const optimise::Metrics m = optimise::metrics(pair.reference, pair.modelled);
       const bool seen = std::find(learnt.begin(), learnt.end(), name) != learnt.end();
-      scores.row({model->stage, name, std::string(seen ? "yes" : "no"), static_cast<double>(m.count), m.rmse, m.nrmse_range.value_or(0.0), m.r2.value_or(0.0), m.bias, m.max_absolute_error});
+      scores.row({model->stage, name, std::string(seen ? "yes" : "no"), static_cast<double>(m.count), m.rmse, or_undefined(m.nrmse_range), or_undefined(m.r2), m.bias, m.max_absolute_error});
       all_reference.push_back(pair.reference);
       all_model.push_back(pair.modelled);
       if (!seen) {
         unseen_reference.push_back(pair.reference);
         unseen_model.push_back(pair.modelled);
       }
-      if (model == models.front()) out.signals->write(name, moment_signal("reference", coordinate, pair.time, pair.reference));
-      out.signals->write(name, moment_signal(model->stage, coordinate, pair.time, pair.modelled));
+      if (model == models.front()) out.signals->write(name, moment_signal(reference_name, coordinate, pair.time, pair.reference));
+      out.signals->write(name, moment_signal(signal_name(context, *model), coordinate, pair.time, pair.modelled));
     }
     const bool judged = !unseen_reference.empty();
     const optimise::Metrics pooled = judged ? optimise::pooled_metrics(unseen_reference, unseen_model) : optimise::pooled_metrics(all_reference, all_model);
     scores.row({model->stage, std::string(judged ? "all unseen trials" : "all trials"), std::string(judged ? "no" : "yes"), static_cast<double>(pooled.count), pooled.rmse,
-                pooled.nrmse_range.value_or(0.0), pooled.r2.value_or(0.0), pooled.bias, pooled.max_absolute_error});
+                or_undefined(pooled.nrmse_range), or_undefined(pooled.r2), pooled.bias, pooled.max_absolute_error});
     if (judged) judged_trials = unseen_reference.size();
-    lines.push_back(fmt::format("`{}` R2 {:.3f}, RMSE {:.2f} N m ({:.1f} % of the range){}", model->stage, pooled.r2.value_or(0.0), pooled.rmse, 100.0 * pooled.nrmse_range.value_or(0.0),
-                                judged ? "" : ", on trials the calibration has seen"));
+    const std::string share = pooled.nrmse_range ? fmt::format(" ({:.1f} % of the range)", 100.0 * *pooled.nrmse_range) : "";
+    lines.push_back(fmt::format("`{}` R2 {}, RMSE {:.2f} N m{}{}", model->stage, figure_text(pooled.r2, 3), pooled.rmse, share, judged ? "" : ", on trials the calibration has seen"));
   }
   out.tables["scores"] = scores.take();
   out.attributes["verdict"] = fmt::format("{}gainst `{}`: {}.", judged_trials == 0 ? "A" : fmt::format("On {} trial{} the calibration never saw, a", judged_trials, judged_trials == 1 ? "" : "s"),
@@ -99,18 +112,19 @@ void fill(const ReportContext& context, report::Section& section) {
   section.blocks.push_back(report::Paragraph{output.attributes.at("verdict")});
   report::GridOptions grid;
   grid.digits = 3;
+  grid.undefined = undefined_text;
   grid.names = {{"seen_in_calibration", "seen in calibration"}, {"nrmse_range", "NRMSE of the range"}, {"bias_N_m", "bias"}, {"largest_N_m", "largest error"}};
   section.blocks.push_back(report::make_grid(output.tables.at("scores"), grid));
   report::PlotRow plots;
   plots.min_width_px = 420.0;
   for (std::size_t t = 0; t < output.signals->info().trials.size(); ++t) {
     const data::TrialInfo& trial = output.signals->info().trials[t];
-    if (!trial.has_signal("reference")) continue;
-    const data::Signal reference = output.signals->signal(t, trial.signal_index("reference"));
+    if (!trial.has_signal(reference_name)) continue;
+    const data::Signal reference = output.signals->signal(t, trial.signal_index(reference_name));
     std::vector<double> time(reference.samples.size());
     for (std::size_t i = 0; i < time.size(); ++i) time[i] = reference.info.time_s(i);
     for (std::size_t s = 0; s < trial.signals.size(); ++s) {
-      if (trial.signals[s].name == "reference" || trial.signals[s].count != time.size()) continue;
+      if (trial.signals[s].name == reference_name || trial.signals[s].count != time.size()) continue;
       const data::Signal modelled = output.signals->signal(t, s);
       plots.plots.push_back(report::make_agreement_plot(fmt::format("{}: {}", trial.name, modelled.info.name), {time, reference.samples, modelled.samples, "moment", "N m"}));
     }

@@ -183,6 +183,8 @@ TEST(Conditioning, BadInputIsRefusedByName) {
   untrimmed.trim_edges = false;
   EXPECT_EQ(input_error([&] { (void)run(untrimmed, 2000.0, std::vector<double>(9, 0.0)); }),
             "trial-too-short: trial `trial` has 9 samples (0.0045 s); its filters need at least 10 (0.005 s)");
+  EXPECT_EQ(input_error([] { (void)run({}, 2000.0, std::vector<double>(4000, 1e307)); }),
+            "not-finite: the sum of the samples of channel `BIC` of trial `trial` is beyond the range of numbers");
   std::vector<double> x = white_noise(4000);
   x[100] = std::nan("");
   x[200] = INFINITY;

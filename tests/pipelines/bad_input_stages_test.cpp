@@ -92,6 +92,34 @@ TEST(BadInput, AnAbsentMvcIsToldWithWhatElseCanBeDone) {
             "  help: name trials that record it in `reference_trials`\n");
 }
 
+TEST(BadInput, AnAbsentRestIsToldWithWhatElseCanBeDone) {
+  const StageData busy = changed(recordings(), [](data::Session& session) {
+    for (data::Trial& t : session.trials) t.kind = data::TrialKind::test;
+  });
+  EXPECT_EQ(envelope_error(busy, "normalise = \"none\"\nsubtract_rest = true"),
+            "error[rest-absent]: stage `emg.envelope` takes off the envelope at rest, and no trial is of kind `rest` or `passive`\n"
+            "  help: record one, name trials in `rest_trials`, or set `subtract_rest = false`\n");
+}
+
+TEST(BadInput, ChannelsOfDifferentRatesAreNotConditionedTogether) {
+  const StageData mixed = with_signal("curl", "biceps", [](data::Signal& s) { s.info.rate_hz = 1000.0; });
+  EXPECT_THAT(envelope_error(mixed, "normalise = \"none\""),
+              ::testing::AllOf(StartsWith("error[rate-mismatch]: EMG channels `"), HasSubstr("`biceps` (1000 Hz, "), HasSubstr("of trial `curl` differ\n"),
+                               HasSubstr("help: condition them in two stages, each with its own `channels`")));
+}
+
+TEST(BadInput, AnAngleSignalThatIsNoAngleIsTold) {
+  const StageData volts = with_signal("curl", "joint_angle", [](data::Signal& s) {
+    s.info.quantity = data::Quantity::other;
+    s.info.unit = "V";
+  });
+  data::Scene scene = elbow();
+  scene.coordinates[0].angle_signal = "joint_angle";
+  EXPECT_EQ(error_of([&] { run("limb.kinematics", "", {{"signals", {&volts}}}, {"curl"}, scene); }),
+            "error[wrong-quantity]: signal `joint_angle` of trial `curl` is meant as the angle of `elbow_flexion`, but it is other [V]\n"
+            "  help: set quantity = \"joint_angle\" in the session description, or `angle_signal` in the scene\n");
+}
+
 TEST(BadInput, AnAbsentMomentIsTold) {
   const StageData none = changed(recordings(), [](data::Session& session) {
     for (data::Trial& t : session.trials) std::erase_if(t.signals, [](const data::Signal& s) { return s.info.quantity == data::Quantity::joint_moment; });

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -48,6 +49,16 @@ TEST(ReportBuild, ThresholdsWorkInBothDirectionsAndNanIsBad) {
   EXPECT_EQ(threshold_tone(kNan, 15.0, 6.0), Tone::bad);
 }
 
+/// A session of one trial with one signal.
+data::Session session_of(const data::Signal& signal) {
+  data::Trial trial;
+  trial.name = "trial";
+  trial.signals = {signal};
+  data::Session session;
+  session.trials = {trial};
+  return session;
+}
+
 TEST(ReportBuild, ASignalBecomesACurveOnItsOwnClockInTheUnitOfTheAxis) {
   data::Signal signal;
   signal.info.name = "elbow";
@@ -59,11 +70,35 @@ TEST(ReportBuild, ASignalBecomesACurveOnItsOwnClockInTheUnitOfTheAxis) {
   const Series series = make_series(signal, "angle", "deg");
   EXPECT_DOUBLE_EQ(series.x[1], 2.01);
   EXPECT_NEAR(series.y[1], 90.0, 1e-12);
-  const data::Signal* signals[] = {&signal};
-  const Plot plot = make_time_plot("Angle", "elbow angle", signals, "deg");
+  const data::Session session = session_of(signal);
+  const std::size_t only[] = {0};
+  const Plot plot = make_time_plot("Angle", "elbow angle", data::MemorySession(session), 0, only, "deg");
   EXPECT_EQ(plot.y_label, "elbow angle [deg]");
   EXPECT_EQ(plot.series[0].label, "elbow");
   EXPECT_THROW(make_series(signal, "angle", "N m"), data::InputError);
+}
+
+TEST(ReportBuild, ALongSignalIsThinnedPieceByPieceAndKeepsItsEndsAndExtremes) {
+  data::Signal signal;
+  signal.info.name = "emg";
+  signal.info.unit = "V";
+  signal.info.rate_hz = 2000.0;
+  signal.samples.assign(1'000'003, 0.0);
+  for (std::size_t i = 0; i < signal.samples.size(); ++i)
+    signal.samples[i] = std::sin(0.37 * static_cast<double>(i));
+  signal.samples[654'321] = 5.0;
+  signal.samples[777'777] = -5.0;
+  signal.info.count = signal.samples.size();
+  const data::Session session = session_of(signal);
+  const Series series = make_series(data::MemorySession(session), 0, 0, "emg", "mV");
+  EXPECT_LE(series.x.size(), 4 * long_series);
+  EXPECT_EQ(series.x.front(), 0.0);
+  EXPECT_DOUBLE_EQ(series.x.back(), 1'000'002.0 / 2000.0);
+  const auto [low, high] = std::minmax_element(series.y.begin(), series.y.end());
+  EXPECT_DOUBLE_EQ(*high, 5000.0);
+  EXPECT_DOUBLE_EQ(*low, -5000.0);
+  EXPECT_DOUBLE_EQ(series.x[static_cast<std::size_t>(high - series.y.begin())], 654'321.0 / 2000.0);
+  EXPECT_TRUE(std::is_sorted(series.x.begin(), series.x.end()));
 }
 
 data::Table table() {
@@ -124,8 +159,8 @@ TEST(ReportAgreement, FiguresAreThoseOfNumpy) {
   EXPECT_NEAR(f.rmse, 0.471510452288969, 1e-13);
   EXPECT_NEAR(f.mean_absolute, 0.403711468928849, 1e-13);
   EXPECT_NEAR(f.largest, 0.819702529620398, 1e-13);
-  EXPECT_NEAR(f.nrmse, 0.0429412276250838, 1e-13);
-  EXPECT_NEAR(f.r_squared, 0.979864870999377, 1e-13);
+  EXPECT_NEAR(f.nrmse.value(), 0.0429412276250838, 1e-13);
+  EXPECT_NEAR(f.r_squared.value(), 0.979864870999377, 1e-13);
   EXPECT_NEAR(f.bias, 0.176097973990931, 1e-13);
   EXPECT_NEAR(f.deviation, 0.442963921867161, 1e-13);
 }
@@ -140,7 +175,20 @@ TEST(ReportAgreement, FramesWithoutBothValuesDoNotCount) {
   EXPECT_EQ(after.rmse, before.rmse);
 }
 
-TEST(ReportAgreement, AConstantMeasurementHasNoFigures) {
+TEST(ReportAgreement, AgainstAConstantMeasurementR2IsNotDefinedAndTheErrorStillIs) {
+  const std::vector<double> time{0, 1, 2}, measured{3, 3, 3}, modelled{1, 2, 3};
+  const AgreementFigures f = agreement_figures(measured, modelled);
+  EXPECT_FALSE(f.r_squared);
+  EXPECT_FALSE(f.nrmse);
+  EXPECT_DOUBLE_EQ(f.bias, -1.0);
+  const Plot plot = make_agreement_plot("hold", {time, measured, modelled, "moment", "N m"});
+  EXPECT_THAT(plot.note, HasSubstr("NRMSE and R² not defined, since the measured values do not vary, bias"));
+  const Grid grid = make_grid({.title = "scores", .columns = {{"r2", "1", std::vector<double>{kNan}}}},
+                              {.undefined = "not defined"});
+  EXPECT_EQ(grid.rows[0][0].text, "not defined");
+}
+
+TEST(ReportAgreement, OneCommonFrameHasNoFigures) {
   const auto message = [](std::vector<double> measured, std::vector<double> modelled) -> std::string {
     try {
       agreement_figures(measured, modelled);
@@ -149,7 +197,6 @@ TEST(ReportAgreement, AConstantMeasurementHasNoFigures) {
     }
     return "";
   };
-  EXPECT_EQ(message({3, 3, 3}, {1, 2, 3}), "zero-variance: the measured values do not vary");
   EXPECT_EQ(message({3, kNan}, {1, 2}),
             "no-common-frames: measured and modelled values have 1 frames in common, 2 are needed");
 }
@@ -182,12 +229,13 @@ TEST(ReportAgreement, LimitsOfAgreementAreBiasAndTwiceNinetyEightHundredthsOfThe
   EXPECT_DOUBLE_EQ(plot.series[0].x[3], 0.5 * (s.measured[3] + s.modelled[3]));
 }
 
-TEST(ReportAgreement, AConstantMeasurementIsStillDrawnAndTheReasonGiven) {
-  const std::vector<double> flat = {2, 2}, other = {1, 3}, time = {0, 1};
+TEST(ReportAgreement, WithoutCommonFramesThereIsStillAPictureAndTheReasonIsGiven) {
+  const std::vector<double> flat = {2, kNan}, other = {1, 3}, time = {0, 1};
   const Pair pair{.time_s = time, .measured = flat, .modelled = other, .quantity = "m", .unit = "N m"};
-  EXPECT_EQ(make_agreement_plot("A", pair).note, "No figures of agreement: the measured values do not vary.");
+  EXPECT_EQ(make_agreement_plot("A", pair).note,
+            "No figures of agreement: measured and modelled values have 1 frames in common, 2 are needed.");
   EXPECT_EQ(make_bland_altman_plot("B", pair).note,
-            "No limits of agreement: the measured values do not vary.");
+            "No limits of agreement: measured and modelled values have 1 frames in common, 2 are needed.");
   EXPECT_THROW(
       make_scatter_plot("S", {.time_s = time, .measured = flat, .modelled = {}, .quantity = "m", .unit = ""}),
       std::logic_error);

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "pipelines/stages/calibration_options.hpp"
 #include "stages_support.hpp"
 
 namespace brachium::pipelines::tests {
@@ -98,6 +100,20 @@ TEST(CalibrateStage, WithoutNoiseFindsTheTwinsParameters) {
   EXPECT_LT(c.tables.at("training").numbers("rmse_N_m")[0], 1e-5);
 }
 
+TEST(CalibrateStage, FindingsNameParametersInWords) {
+  data::Subject subject;
+  subject.verdicts.resize(2);
+  subject.verdicts[0].muscle = "biceps";
+  subject.verdicts[0].parameter = "tendon_slack_length_factor";
+  subject.verdicts[0].unit = "1";
+  subject.verdicts[1].muscle = "*";
+  subject.verdicts[1].parameter = "delay_s";
+  subject.verdicts[1].unit = "s";
+  StageOutput out;
+  add_calibration_findings({{data::Severity::warning, "not-identified", "`biceps tendon_slack_length_factor` is NOT IDENTIFIED: correlated 0.98 with * delay_s", {}, {}}}, subject, out);
+  EXPECT_EQ(out.diagnostics[0].message, "`biceps tendon slack length factor` is NOT IDENTIFIED: correlated 0.98 with common delay");
+}
+
 TEST(CalibrateStage, ScalingByTheTrainingMaximumBelongsToTheGains) {
   const std::string options = exact + "free = [ { parameter = \"gain\", scope = \"channel\", lower = 0.01, upper = 2.0 } ]\nnormalise_by_training_maximum = true\nlinear_strength_first = false\n";
   const StageData c = run("optimise.calibrate", options, calibration_inputs(), learning);
@@ -179,6 +195,28 @@ TEST(CompareStage, AConstantErrorIsItsOwnRmseAndBias) {
   EXPECT_NEAR(c.tables.at("scores").numbers("rmse_N_m")[0], 0.5, 1e-12);
   EXPECT_NEAR(c.tables.at("scores").numbers("bias_N_m")[0], 0.5, 1e-12);
   EXPECT_EQ(c.tables.at("scores").numbers("frames")[0], 1201.0);  // from 1 s to 7 s at 200 Hz, both included
+}
+
+TEST(CompareStage, AgainstAConstantReferenceR2IsSaidToBeNotDefined) {
+  const auto constant = [](double value) {
+    return changed(recordings(), [value](data::Session& session) {
+      for (data::Trial& t : session.trials)
+        for (data::Signal& s : t.signals)
+          if (s.info.name == "joint_moment") s.samples.assign(s.samples.size(), value);
+    });
+  };
+  const StageData hold = named(constant(12.0), "hold"), model = named(constant(12.5), "model");
+  const StageData c = run("pipelines.compare", "", {{"reference", {&hold}}, {"models", {&model}}}, {"curl"});
+  EXPECT_TRUE(std::isnan(c.tables.at("scores").numbers("r2")[0]));
+  EXPECT_TRUE(std::isnan(c.tables.at("scores").numbers("nrmse_range")[1]));
+  EXPECT_THAT(c.attributes.at("verdict"), HasSubstr("`model` R2 not defined, RMSE 0.50 N m"));
+}
+
+TEST(CompareStage, AModelMayBeCalledReference) {
+  const StageData model = named(changed(recordings(), [](data::Session&) {}), "reference");
+  const StageData c = run("pipelines.compare", "", {{"reference", {&recordings()}}, {"models", {&model}}}, {"curl"});
+  EXPECT_EQ(signal(c, "curl", "reference_model").samples.size(), signal(c, "curl", "reference").samples.size());
+  EXPECT_EQ(c.tables.at("scores").texts("model")[0], "reference");
 }
 
 TEST(CompareStage, TrialsThatTheCalibrationHasSeenAreFlaggedAndNotJudged) {
