@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "fem/linear/constraint_order.hpp"
+#include "fem/linear/dense_front.hpp"
 #include "fem/linear/elimination_tree.hpp"
 #include "fem/linear/supernodes.hpp"
 
@@ -86,9 +87,9 @@ struct Builder {
       for (int k = 0; k < graph.size(v); ++k) tree.row.push_back(first + k);
     }
     front.updates = static_cast<int>(static_cast<long long>(tree.row.size()) - front.row_start);
-    front.panel_start = tree.panel_entries;
+    front.factor_start = tree.stored_entries;
     const long long w = front.pivots, u = front.updates;
-    tree.panel_entries += (w + u) * w;
+    tree.stored_entries += static_cast<long long>(DenseFront::l_size(front.pivots, front.updates));
     tree.factor_entries += w * (w + 1) / 2 + w * u;
     tree.flops += front_flops(double(w), double(u));
   }

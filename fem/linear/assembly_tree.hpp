@@ -13,12 +13,12 @@
 namespace brachium::fem {
 
 struct Front {
-  int first = 0;              ///< position of the first pivot in the order of elimination
-  int pivots = 0;             ///< w
-  int updates = 0;            ///< u: rows below the pivots, whose Schur complement goes to the parent
-  int parent = -1;            ///< a later front; -1: none
-  long long row_start = 0;    ///< into AssemblyTree::row: positions of the u rows, ascending
-  long long panel_start = 0;  ///< into the factor: the panel of (w + u) x w values by columns
+  int first = 0;               ///< position of the first pivot in the order of elimination
+  int pivots = 0;              ///< w
+  int updates = 0;             ///< u: rows below the pivots, whose Schur complement goes to the parent
+  int parent = -1;             ///< a later front; -1: none
+  long long row_start = 0;     ///< into AssemblyTree::row: positions of the u rows, ascending
+  long long factor_start = 0;  ///< into the factor: rows of L, see DenseFront::packed_l
 
   int size() const { return pivots + updates; }
 };
@@ -31,7 +31,7 @@ struct AssemblyTree {
   std::vector<int> child_start, child;  ///< children of a front, ascending
   /// Place of each update row inside the parent's front (0 ... w + u of the parent), alongside `row`.
   std::vector<int> row_in_parent;
-  long long panel_entries = 0;   ///< values stored in all panels
+  long long stored_entries = 0;  ///< values stored for L, with what fills it up to whole panels
   long long factor_entries = 0;  ///< entries of L on and below the diagonal
   double flops = 0.0;            ///< Σ (rows of a column of L)^2
 };

@@ -7,14 +7,15 @@
 ///
 /// symbol | identifier | meaning
 /// w, u   | pivots, updates | columns eliminated; rows of the Schur complement
-/// L      | panel      | (w + u) x w by columns; strictly below the diagonal, which is 1
-/// D      | d, e       | diagonal; entries (k + 1, k), not 0 where k and k + 1 are a 2 x 2 pivot
+/// W      | packed_w   | F on entry; in panels of 12 rows, each by columns of 12 values; rows filled up with
+/// zeros L      | packed_l   | in groups of 4 rows, each by columns of 4 values; strictly below the diagonal,
+/// which is 1 D      | d, e       | diagonal; entries (k + 1, k), not 0 where k and k + 1 are a 2 x 2 pivot
 /// S      | schur      | lower triangle by columns without gaps, u (u + 1) / 2 values
 /// g      | growth     | (|L| |D| |L'|)_ii of every row of the front
 ///
-/// Within a block of 48 columns the work is left-looking: a row of W needs the rows of W and L of former
-/// blocks only, so that row panels are independent. Every value is computed by the same operations in the
-/// same order whoever does it.
+/// Pivot rows and update rows start panels of their own. A block of 48 columns takes the former blocks'
+/// columns at once (left-looking): a row of W needs the rows of W and L of former blocks only, so that row
+/// panels are independent. Every value is computed by the same operations in the same order whoever does it.
 
 #include <atomic>
 #include <cstddef>
@@ -26,19 +27,18 @@ constexpr int kColumns = 4;  ///< rows of a packed group of L, columns of a regi
 constexpr int kBlock = 48;   ///< columns eliminated at a time
 constexpr int kStrip = 96;   ///< columns of a tile of the Schur complement
 constexpr int kChunk = 192;  ///< rows of a tile of the Schur complement
-constexpr int kDepth = 256;  ///< columns of W and L multiplied at a time: what the first cache holds
+constexpr int kDepth = 128;  ///< columns of W and L multiplied at a time: what the first cache holds
 
 struct DenseFront {
   int pivots = 0, updates = 0;
-  double* panel = nullptr;
   double* d = nullptr;               // w
   double* e = nullptr;               // w
   int* interchange = nullptr;        // w: place within its block that an unknown comes from
   char* block_pivoted = nullptr;     // per block of columns
   double* growth = nullptr;          // w + u
   const double* diagonal = nullptr;  // w + u: |a_ii|
-  double* packed_w = nullptr;        // panels of 12 rows, each w x 12
-  double* packed_l = nullptr;        // groups of 4 rows, each w x 4
+  double* packed_w = nullptr;        // w_size()
+  double* packed_l = nullptr;        // l_size()
   double* schur = nullptr;
   double zero_pivot = 0.0;
 
@@ -53,11 +53,27 @@ struct DenseFront {
     return p < pivot_panels() ? p * kRows : pivots + (p - pivot_panels()) * kRows;
   }
   int blocks() const { return (pivots + kBlock - 1) / kBlock; }
-  std::size_t packed_size() const {
-    return static_cast<std::size_t>(panels()) * kRows * static_cast<std::size_t>(pivots);
+  static std::size_t packed_rows(int pivots, int updates) {
+    const auto panels_of = [](int rows) { return static_cast<std::size_t>((rows + kRows - 1) / kRows); };
+    return kRows * (panels_of(pivots) + panels_of(updates));
   }
-  double* w_panel(int p) const { return packed_w + static_cast<std::size_t>(p) * kRows * pivots; }
-  double* l_group(int g) const { return packed_l + static_cast<std::size_t>(g) * kColumns * pivots; }
+  static std::size_t l_size(int pivots, int updates) {
+    return packed_rows(pivots, updates) * static_cast<std::size_t>(pivots);
+  }
+  /// Columns of a panel of W: whole register tiles.
+  static int w_columns(int pivots) { return (pivots + kColumns - 1) / kColumns * kColumns; }
+  std::size_t w_size() const {
+    return packed_rows(pivots, updates) * static_cast<std::size_t>(w_columns(pivots));
+  }
+  double* w_panel(int p) const {
+    return packed_w + static_cast<std::ptrdiff_t>(p) * kRows * w_columns(pivots);
+  }
+  double* l_group(int g) const { return packed_l + static_cast<std::ptrdiff_t>(g) * kColumns * pivots; }
+  /// Place of a row of the front in its first column: column k stands kRows k values behind.
+  std::ptrdiff_t w_offset(int row) const {
+    const int padded = row < pivots ? row : pivot_panels() * kRows + row - pivots;
+    return static_cast<std::ptrdiff_t>(padded / kRows) * kRows * w_columns(pivots) + padded % kRows;
+  }
 
   /// First value of column j of the Schur complement, so that row i stands at [i]: column j starts at its
   /// diagonal.

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the entries of A go in the panels of the fronts.
+/// Where the entries of A go in the fronts.
 
 #include <span>
 #include <vector>
@@ -12,20 +12,20 @@ namespace brachium::fem {
 /// where the rows are eliminated before the column, to consecutive columns of one row.
 struct EntryRun {
   int entry;   ///< first entry of A
-  int offset;  ///< of the first value in its panel
+  int offset;  ///< of the first value in DenseFront::packed_w
   int length;
-  int step;  ///< 1, or the number of rows of the panel
+  int step;  ///< 1, or that of the columns of a panel
 };
 
 struct EntryMap {
   std::vector<long long> start;  ///< runs of a front: [start[f], start[f + 1])
   std::vector<EntryRun> runs;
 
-  /// Adds the entries of A that belong to front f to its panel.
-  void scatter(int f, std::span<const double> values, double* panel) const {
+  /// Adds the entries of A that belong to front f to its columns.
+  void scatter(int f, std::span<const double> values, double* packed_w) const {
     for (long long r = start[f]; r < start[f + 1]; ++r) {
       const EntryRun& run = runs[r];
-      double* to = panel + run.offset;
+      double* to = packed_w + run.offset;
       const double* from = values.data() + run.entry;
       for (int k = 0; k < run.length; ++k) to[static_cast<std::ptrdiff_t>(k) * run.step] += from[k];
     }

@@ -29,7 +29,7 @@ struct Multifrontal::Job {
 
 Multifrontal::Multifrontal(AssemblyTree tree, EntryMap map) : tree_(std::move(tree)), map_(std::move(map)) {
   const std::size_t n = tree_.unknown_at.size();
-  factor_.panels = allocate_aligned(static_cast<std::size_t>(tree_.panel_entries));
+  factor_.l = allocate_aligned(static_cast<std::size_t>(tree_.stored_entries));
   factor_.d.resize(n);
   factor_.e.resize(n);
   factor_.interchange.resize(n);
@@ -81,7 +81,7 @@ void Multifrontal::make_units() {
 
 long long Multifrontal::memory_bytes() const {
   return static_cast<long long>(sizeof(double)) *
-             (tree_.panel_entries + 3 * static_cast<long long>(factor_.d.size())) +
+             (tree_.stored_entries + 3 * static_cast<long long>(factor_.d.size())) +
          static_cast<long long>(buffers_.bytes()) +
          static_cast<long long>(sizeof(EntryRun)) * static_cast<long long>(map_.runs.size()) +
          static_cast<long long>(sizeof(int)) *
@@ -107,23 +107,29 @@ void Multifrontal::factorise(std::span<const double> values, std::span<const dou
   factor_.largest_multiplier = job.largest_multiplier;
 }
 
-std::vector<Multifrontal::Child> Multifrontal::children_of(int f) const {
+std::vector<Multifrontal::Child> Multifrontal::children_of(int f, const DenseFront& front) const {
   std::vector<Child> children;
+  const auto append = [](std::vector<Run>& runs, int i, std::ptrdiff_t place) {
+    if (runs.empty() || runs.back().end != i || runs.back().shift != place - i)
+      runs.push_back({i, i, place - i});
+    ++runs.back().end;
+  };
   for (int c = tree_.child_start[f]; c < tree_.child_start[f + 1]; ++c) {
-    Child child{tree_.child[c], {}};
-    const Front& front = tree_.fronts[child.front];
-    const int* place = tree_.row_in_parent.data() + front.row_start;
-    const int pivots = tree_.fronts[f].pivots;
-    for (int i = 0; i < front.updates; ++i) {
-      const bool crosses = place[i] == pivots;  // no run goes from pivots to update rows
-      if (child.runs.empty() || child.runs.back().shift != place[i] - i || crosses) {
-        child.runs.push_back({i, i, place[i] - i});
-      }
-      ++child.runs.back().end;
+    Child child{tree_.child[c], {}, {}};
+    const Front& shape = tree_.fronts[child.front];
+    const int* place = tree_.row_in_parent.data() + shape.row_start;
+    for (int i = 0; i < shape.updates; ++i) {
+      append(child.in_w, i, front.w_offset(place[i]));
+      if (place[i] >= front.pivots) append(child.in_schur, i, place[i] - front.pivots);
     }
     children.push_back(std::move(child));
   }
   return children;
+}
+
+DenseFront Multifrontal::view(int f) const {
+  const Front& shape = tree_.fronts[f];
+  return DenseFront{.pivots = shape.pivots, .updates = shape.updates, .packed_l = factor_.l.get() + shape.factor_start};
 }
 
 void Multifrontal::eliminate(int f, Job& job) {
@@ -140,16 +146,15 @@ void Multifrontal::eliminate(int f, Job& job) {
   DenseFront front;
   front.pivots = shape.pivots;
   front.updates = shape.updates;
-  front.panel = factor_.panels.get() + shape.panel_start;
+  front.packed_l = factor_.l.get() + shape.factor_start;
   front.d = factor_.d.data() + shape.first;
   front.e = factor_.e.data() + shape.first;
   front.interchange = factor_.interchange.data() + shape.first;
   front.block_pivoted = factor_.block_pivoted.data() + factor_.block_start[f];
   front.zero_pivot = job.zero_pivot;
-  Buffer work = buffers_.take(2 * front.packed_size() + 2 * (w + u));
+  Buffer work = buffers_.take(front.w_size() + 2 * (w + u));
   front.packed_w = work.data.get();
-  front.packed_l = front.packed_w + front.packed_size();
-  front.growth = front.packed_l + front.packed_size();
+  front.growth = front.packed_w + front.w_size();
   double* diagonal = front.growth + w + u;
   for (std::size_t k = 0; k < w; ++k) diagonal[k] = job.diagonal[static_cast<std::size_t>(shape.first) + k];
   for (std::size_t k = 0; k < u; ++k)
@@ -157,7 +162,7 @@ void Multifrontal::eliminate(int f, Job& job) {
         job.diagonal[static_cast<std::size_t>(tree_.row[static_cast<std::size_t>(shape.row_start) + k])];
   front.diagonal = diagonal;
 
-  const std::vector<Child> children = children_of(f);
+  const std::vector<Child> children = children_of(f, front);
   assemble(f, job, front, children, in_parallel);
   for (int b = 0; b < front.blocks(); ++b) {
     job.kernels.eliminate_diagonal(front, b);
@@ -203,11 +208,11 @@ void Multifrontal::assemble(int f, Job& job, DenseFront& front, const std::vecto
     const int* place = tree_.row_in_parent.data() + shape.row_start;
     for (int i = 0; i < shape.updates; ++i) front.growth[place[i]] += growth[i];
   }
-  std::fill(front.panel, front.panel + size * front.pivots, 0.0);
-  map_.scatter(f, job.values, front.panel);
+  std::fill(front.packed_w, front.packed_w + front.w_size(), 0.0);
+  map_.scatter(f, job.values, front.packed_w);
   const auto strip = [&](int s) {
     for (const Child& child : children)
-      add_to_panel(child, front, s * kStrip, std::min((s + 1) * kStrip, front.pivots));
+      add_to_columns(child, front, s * kStrip, std::min((s + 1) * kStrip, front.pivots));
   };
   const int strips = (front.pivots + kStrip - 1) / kStrip;
   if (in_parallel) {
@@ -218,22 +223,22 @@ void Multifrontal::assemble(int f, Job& job, DenseFront& front, const std::vecto
 }
 
 // Pivot columns [begin, end) of the front.
-void Multifrontal::add_to_panel(const Child& child, DenseFront& front, int begin, int end) {
+void Multifrontal::add_to_columns(const Child& child, DenseFront& front, int begin, int end) {
   const Front& shape = tree_.fronts[child.front];
   const double* schur = schur_[child.front].data.get();
   const int* place = tree_.row_in_parent.data() + shape.row_start;
   const int from = static_cast<int>(std::lower_bound(place, place + shape.updates, begin) - place);
   std::size_t first_run = 0;
   for (int j = from; j < shape.updates && place[j] < end; ++j) {
-    while (child.runs[first_run].end <= j) ++first_run;
+    while (child.in_w[first_run].end <= j) ++first_run;
     const double* column = schur + DenseFront::schur_offset(j, shape.updates);
-    double* to = front.panel + static_cast<std::ptrdiff_t>(place[j]) * front.size();
-    for (std::size_t r = first_run; r < child.runs.size(); ++r) {
-      const Run& run = child.runs[r];
-      const int begin_row = std::max(run.begin, j);
+    double* to = front.packed_w + static_cast<std::ptrdiff_t>(place[j]) * kRows;
+    for (std::size_t r = first_run; r < child.in_w.size(); ++r) {
+      const Run& run = child.in_w[r];
+      const int begin_row = std::max(run.begin, j), count = run.end - begin_row;
       const double* values = column + begin_row;
       double* rows = to + begin_row + run.shift;
-      for (int i = 0; i < run.end - begin_row; ++i) rows[i] += values[i];
+      for (int i = 0; i < count; ++i) rows[i] += values[i];
     }
   }
 }
@@ -253,11 +258,11 @@ void Multifrontal::add_to_schur(const Child& child, DenseFront& front, int colum
   std::size_t first_run = 0;
   for (int j = column_begin; j < column_end; ++j) {
     const int top = std::max(row_begin, j);
-    while (first_run < child.runs.size() && child.runs[first_run].end <= top) ++first_run;
+    while (first_run < child.in_schur.size() && child.in_schur[first_run].end <= top) ++first_run;
     const double* from = schur + DenseFront::schur_offset(j, shape.updates);
-    double* to = front.schur_column(place[j] - w) - w;
-    for (std::size_t r = first_run; r < child.runs.size() && child.runs[r].begin < row_end; ++r) {
-      const Run& run = child.runs[r];
+    double* to = front.schur_column(place[j] - w);
+    for (std::size_t r = first_run; r < child.in_schur.size() && child.in_schur[r].begin < row_end; ++r) {
+      const Run& run = child.in_schur[r];
       const int begin_row = std::max(run.begin, top), count = std::min(run.end, row_end) - begin_row;
       const double* values = from + begin_row;
       double* rows = to + begin_row + run.shift;

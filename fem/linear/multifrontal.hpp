@@ -14,7 +14,7 @@ namespace brachium::fem {
 
 /// Factor P A P' = L D L', where each front has its own interchanges inside blocks of 48 pivots.
 struct LdlFactor {
-  AlignedArray panels;           ///< AssemblyTree::panel_entries
+  AlignedArray l;                ///< AssemblyTree::stored_entries
   std::vector<double> d, e;      ///< by position: diagonal and subdiagonal of D; 0 for a pivot that vanished
   std::vector<int> interchange;  ///< by position: place within its block of pivots
   std::vector<char> block_pivoted;  ///< by blocks of all fronts, see block_start
@@ -41,22 +41,26 @@ class Multifrontal {
 
  private:
   struct Job;  // of one factorisation
+  // Update rows [begin, end) of a child whose places in the parent are consecutive: row i stands `shift` + i
+  // values behind the first row of a column of S, or of a column of W, where runs end with the panels.
   struct Run {
-    int begin, end, shift;  // update rows [begin, end) of a child stand at row + shift of the parent's front
+    int begin, end;
+    std::ptrdiff_t shift;
   };
   struct Child {
     int front;
-    std::vector<Run> runs;
+    std::vector<Run> in_w, in_schur;
   };
 
   void make_units();
   void eliminate(int f, Job& job);
   void assemble(int f, Job& job, DenseFront& front, const std::vector<Child>& children, bool in_parallel);
-  void add_to_panel(const Child& child, DenseFront& front, int begin, int end);
+  void add_to_columns(const Child& child, DenseFront& front, int begin, int end);
   void add_to_schur(const Child& child, DenseFront& front, int column, int row);
-  std::vector<Child> children_of(int f) const;
-  void forward(int f, double* y, std::vector<double>& below) const;
-  void backward(int f, double* y, std::vector<double>& below) const;
+  std::vector<Child> children_of(int f, const DenseFront& front) const;
+  DenseFront view(int f) const;  // shape and factor
+  void forward(int f, double* y, double* padded) const;
+  void backward(int f, double* y, double* padded, double* sums) const;
 
   AssemblyTree tree_;
   EntryMap map_;

@@ -1,4 +1,5 @@
-// Back-substitution: forward through the fronts with L, then D, then backward with L'.
+// Back-substitution: forward through the fronts with L, then D, then backward with L'. L is read once each
+// way, in the order in which it is stored.
 
 #include <algorithm>
 
@@ -8,87 +9,100 @@ namespace brachium::fem {
 
 namespace {
 
-// y -= Σ_k l_k x_k over `columns` columns of `rows` values, `step` apart.
-void subtract_columns(const double* l, std::ptrdiff_t step, int rows, int columns, const double* x,
-                      double* y) {
-  int k = 0;
-  for (; k + 4 <= columns; k += 4, l += 4 * step) {
-    const double x0 = x[k], x1 = x[k + 1], x2 = x[k + 2], x3 = x[k + 3];
-    const double *l0 = l, *l1 = l + step, *l2 = l + 2 * step, *l3 = l + 3 * step;
-    for (int i = 0; i < rows; ++i) y[i] -= (l0[i] * x0 + l1[i] * x1) + (l2[i] * x2 + l3[i] * x3);
+// y(12 rows of a panel) -= L x over columns [0, columns).
+void subtract_panel(const DenseFront& f, int panel, int columns, const double* x, double* y) {
+  const double *l0 = f.l_group(3 * panel), *l1 = f.l_group(3 * panel + 1), *l2 = f.l_group(3 * panel + 2);
+  double sum[kRows] = {};
+  for (int k = 0; k < columns; ++k) {
+    for (int i = 0; i < 4; ++i) sum[i] += l0[4 * k + i] * x[k];
+    for (int i = 0; i < 4; ++i) sum[4 + i] += l1[4 * k + i] * x[k];
+    for (int i = 0; i < 4; ++i) sum[8 + i] += l2[4 * k + i] * x[k];
   }
-  for (; k < columns; ++k, l += step) {
-    for (int i = 0; i < rows; ++i) y[i] -= l[i] * x[k];
+  for (int i = 0; i < kRows; ++i) y[i] -= sum[i];
+}
+
+// sums(4 partial sums of each column) += L' y over columns [0, columns) of a panel.
+void add_panel(const DenseFront& f, int panel, int columns, const double* y, double* sums) {
+  const double *l0 = f.l_group(3 * panel), *l1 = f.l_group(3 * panel + 1), *l2 = f.l_group(3 * panel + 2);
+  for (int k = 0; k < columns; ++k) {
+    for (int i = 0; i < 4; ++i) {
+      sums[4 * k + i] += l0[4 * k + i] * y[i] + (l1[4 * k + i] * y[4 + i] + l2[4 * k + i] * y[8 + i]);
+    }
   }
 }
 
-double dot(const double* a, const double* b, int count) {
-  double sum[8] = {};
-  int i = 0;
-  for (; i + 8 <= count; i += 8) {
-    for (int q = 0; q < 8; ++q) sum[q] += a[i + q] * b[i + q];
-  }
-  for (; i < count; ++i) sum[0] += a[i] * b[i];
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+double l_entry(const DenseFront& f, int row, int column) {
+  return f.l_group(row / 4)[4 * column + row % 4];
 }
 
 }  // namespace
 
-void Multifrontal::forward(int f, double* y, std::vector<double>& below) const {
-  const Front& front = tree_.fronts[f];
-  const double* panel = factor_.panels.get() + front.panel_start;
-  const std::ptrdiff_t size = front.size();
-  double* own = y + front.first;
-  std::fill(below.begin(), below.begin() + front.updates, 0.0);
-  for (int first = 0, b = 0; first < front.pivots; first += kBlock, ++b) {
-    const int m = std::min(kBlock, front.pivots - first);
+// `padded`: the front's pivots and update rows, each filled up to whole panels.
+void Multifrontal::forward(int f, double* y, double* padded) const {
+  const Front& shape = tree_.fronts[f];
+  const DenseFront front = view(f);
+  const int w = shape.pivots, padded_pivots = front.pivot_panels() * kRows;
+  double *own = padded, *below = padded + padded_pivots;
+  std::copy(y + shape.first, y + shape.first + w, own);
+  std::fill(own + w, own + padded_pivots, 0.0);
+  for (int first = 0, b = 0; first < w; first += kBlock, ++b) {
+    const int m = std::min(kBlock, w - first);
+    for (int row = first; row < first + m; row += kRows)
+      subtract_panel(front, row / kRows, first, own, own + row);
     if (factor_.block_pivoted[factor_.block_start[f] + b] != 0) {
       double moved[kBlock];
       std::copy(own + first, own + first + m, moved);
-      for (int k = 0; k < m; ++k) own[first + k] = moved[factor_.interchange[front.first + first + k]];
+      for (int k = 0; k < m; ++k) own[first + k] = moved[factor_.interchange[shape.first + first + k]];
     }
-    for (int k = 0; k < m; ++k) {
-      const double* column = panel + (first + k) * size + first;
-      for (int i = k + 1; i < m; ++i) own[first + i] -= column[i] * own[first + k];
+    for (int k = first; k < first + m; ++k) {
+      for (int i = k + 1; i < first + m; ++i) own[i] -= l_entry(front, i, k) * own[k];
     }
-    const double* columns = panel + first * size;
-    const int done = first + m;
-    subtract_columns(columns + done, size, front.pivots - done, m, own + first, own + done);
-    subtract_columns(columns + front.pivots, size, front.updates, m, own + first, below.data());
   }
-  const int* row = tree_.row.data() + front.row_start;
-  for (int i = 0; i < front.updates; ++i) y[row[i]] += below[i];
+  std::copy(own, own + w, y + shape.first);
+  std::fill(below, below + (front.panels() - front.pivot_panels()) * kRows, 0.0);
+  for (int p = front.pivot_panels(); p < front.panels(); ++p) {
+    subtract_panel(front, p, w, own, below + (p - front.pivot_panels()) * kRows);
+  }
+  const int* row = tree_.row.data() + shape.row_start;
+  for (int i = 0; i < shape.updates; ++i) y[row[i]] += below[i];
 }
 
-void Multifrontal::backward(int f, double* y, std::vector<double>& below) const {
-  const Front& front = tree_.fronts[f];
-  const double* panel = factor_.panels.get() + front.panel_start;
-  const std::ptrdiff_t size = front.size();
-  double* own = y + front.first;
-  const int* row = tree_.row.data() + front.row_start;
-  for (int i = 0; i < front.updates; ++i) below[i] = y[row[i]];
-  const int blocks = (front.pivots + kBlock - 1) / kBlock;
-  for (int b = blocks - 1; b >= 0; --b) {
-    const int first = b * kBlock, m = std::min(kBlock, front.pivots - first), done = first + m;
-    for (int k = m - 1; k >= 0; --k) {
-      const double* column = panel + (first + k) * size;
-      double sum = dot(column + front.pivots, below.data(), front.updates) +
-                   dot(column + done, own + done, front.pivots - done);
-      for (int i = first + k + 1; i < done; ++i) sum += column[i] * own[i];
-      own[first + k] -= sum;
+void Multifrontal::backward(int f, double* y, double* padded, double* sums) const {
+  const Front& shape = tree_.fronts[f];
+  const DenseFront front = view(f);
+  const int w = shape.pivots, padded_pivots = front.pivot_panels() * kRows;
+  double *own = padded, *below = padded + padded_pivots;
+  std::copy(y + shape.first, y + shape.first + w, own);
+  std::fill(own + w, own + padded_pivots, 0.0);
+  const int* row = tree_.row.data() + shape.row_start;
+  for (int i = 0; i < shape.updates; ++i) below[i] = y[row[i]];
+  std::fill(below + shape.updates, below + (front.panels() - front.pivot_panels()) * kRows, 0.0);
+  std::fill(sums, sums + 4 * w, 0.0);
+  for (int p = front.pivot_panels(); p < front.panels(); ++p) {
+    add_panel(front, p, w, below + (p - front.pivot_panels()) * kRows, sums);
+  }
+  for (int b = front.blocks() - 1; b >= 0; --b) {
+    const int first = b * kBlock, m = std::min(kBlock, w - first);
+    for (int k = first + m - 1; k >= first; --k) {
+      double sum = (sums[4 * k] + sums[4 * k + 1]) + (sums[4 * k + 2] + sums[4 * k + 3]);
+      for (int i = k + 1; i < first + m; ++i) sum += l_entry(front, i, k) * own[i];
+      own[k] -= sum;
     }
     if (factor_.block_pivoted[factor_.block_start[f] + b] != 0) {
       double moved[kBlock];
-      std::copy(own + first, own + done, moved);
-      for (int k = 0; k < m; ++k) own[first + factor_.interchange[front.first + first + k]] = moved[k];
+      std::copy(own + first, own + first + m, moved);
+      for (int k = 0; k < m; ++k) own[first + factor_.interchange[shape.first + first + k]] = moved[k];
     }
+    for (int r = first; r < first + m; r += kRows) add_panel(front, r / kRows, first, own + r, sums);
   }
+  std::copy(own, own + w, y + shape.first);
 }
 
 void Multifrontal::solve(double* y) const {
-  std::vector<double> below(static_cast<std::size_t>(largest_front_));
+  std::vector<double> padded(static_cast<std::size_t>(largest_front_) + 2 * kRows);
+  std::vector<double> sums(4 * static_cast<std::size_t>(largest_front_));
   const int count = static_cast<int>(tree_.fronts.size());
-  for (int f = 0; f < count; ++f) forward(f, y, below);
+  for (int f = 0; f < count; ++f) forward(f, y, padded.data());
   const int n = static_cast<int>(factor_.d.size());
   for (int k = 0; k < n; ++k) {
     if (factor_.e[k] != 0.0) {
@@ -102,7 +116,7 @@ void Multifrontal::solve(double* y) const {
       y[k] /= factor_.d[k];
     }
   }
-  for (int f = count - 1; f >= 0; --f) backward(f, y, below);
+  for (int f = count - 1; f >= 0; --f) backward(f, y, padded.data(), sums.data());
 }
 
 }  // namespace brachium::fem
