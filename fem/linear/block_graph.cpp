@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include <cholmod.h>
+#include <metis.h>
 
 #include "fem/linear/linear_checks.hpp"
 
@@ -53,7 +54,74 @@ void number_vertices(const SymmetricPattern& pattern, const UnknownGroups& group
   }
 }
 
+std::vector<int> order_by_amd(const BlockGraph& graph) {
+  // Lower triangle by columns for CHOLMOD (stype -1).
+  const int vertices = graph.vertices();
+  std::vector<int> column_start{0}, row, result(vertices);
+  row.reserve(graph.neighbour.size() / 2 + vertices);
+  for (int v = 0; v < vertices; ++v) {
+    row.push_back(v);
+    for (int e = graph.start[v]; e < graph.start[v + 1]; ++e) {
+      if (graph.neighbour[e] > v) row.push_back(graph.neighbour[e]);
+    }
+    column_start.push_back(static_cast<int>(row.size()));
+  }
+  cholmod_sparse matrix{};
+  matrix.nrow = matrix.ncol = static_cast<std::size_t>(vertices);
+  matrix.nzmax = row.size();
+  matrix.p = column_start.data();
+  matrix.i = row.data();
+  matrix.stype = -1;
+  matrix.itype = CHOLMOD_INT;
+  matrix.xtype = CHOLMOD_PATTERN;
+  matrix.dtype = CHOLMOD_DOUBLE;
+  matrix.sorted = matrix.packed = 1;
+  cholmod_common common;
+  cholmod_start(&common);
+  common.print = 0;
+  const int ok = cholmod_amd(&matrix, nullptr, 0, result.data(), &common);
+  const int status = common.status;
+  cholmod_finish(&common);
+  if (ok == 0) {
+    if (status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::logic_error("AMD refused to order a graph, status " + std::to_string(status));
+  }
+  return result;
+}
+
+// Empty where METIS fails, as it now and then does on an odd graph.
+std::vector<int> order_by_metis(const BlockGraph& graph) {
+  std::vector<idx_t> start(graph.start.begin(), graph.start.end());
+  std::vector<idx_t> neighbour(graph.neighbour.begin(), graph.neighbour.end());
+  idx_t vertices = graph.vertices();
+  std::vector<idx_t> vertex_at(graph.start.size(), -1), position_of(graph.start.size());
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_NSEPS] = 2;
+  options[METIS_OPTION_UFACTOR] = 100;
+  options[METIS_OPTION_SEED] = 1;
+  int status = METIS_ERROR;
+  {
+    const std::lock_guard lock(metis_mutex());
+    status = METIS_NodeND(&vertices, start.data(), neighbour.data(), nullptr, options, vertex_at.data(),
+                          position_of.data());
+  }
+  if (status == METIS_ERROR_MEMORY) throw std::bad_alloc();
+  if (status != METIS_OK) return {};
+  std::vector<int> result(vertex_at.begin(), vertex_at.end() - 1);
+  std::vector<char> seen(result.size(), 0);
+  for (const int v : result) {
+    if (v < 0 || v >= graph.vertices() || seen[v]++ != 0) return {};
+  }
+  return result;
+}
+
 }  // namespace
+
+std::mutex& metis_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
 
 BlockGraph make_block_graph(const SymmetricPattern& pattern, const UnknownGroups& groups) {
   check(pattern);
@@ -101,46 +169,15 @@ BlockGraph make_block_graph(const SymmetricPattern& pattern, const UnknownGroups
 }
 
 BlockOrder order(const BlockGraph& graph, Ordering ordering) {
-  const int vertices = graph.vertices();
   if (ordering == Ordering::automatic) {
-    ordering = vertices < kSmallGraph ? Ordering::amd : Ordering::metis;
+    ordering = graph.vertices() < kSmallGraph ? Ordering::amd : Ordering::metis;
   }
-  cholmod_common common;
-  cholmod_start(&common);
-  common.print = 0;
-  // Lower triangle by columns for CHOLMOD (stype -1).
-  std::vector<int> column_start{0}, row;
-  row.reserve(graph.neighbour.size() / 2 + vertices);
-  for (int v = 0; v < vertices; ++v) {
-    row.push_back(v);
-    for (int e = graph.start[v]; e < graph.start[v + 1]; ++e) {
-      if (graph.neighbour[e] > v) row.push_back(graph.neighbour[e]);
-    }
-    column_start.push_back(static_cast<int>(row.size()));
+  if (ordering == Ordering::metis && !graph.neighbour.empty()) {
+    std::vector<int> result = order_by_metis(graph);
+    if (!result.empty()) return {std::move(result), "METIS"};
+    return {order_by_amd(graph), "AMD (METIS failed)"};
   }
-  cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = static_cast<std::size_t>(vertices);
-  matrix.nzmax = row.size();
-  matrix.p = column_start.data();
-  matrix.i = row.data();
-  matrix.stype = -1;
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = CHOLMOD_PATTERN;
-  matrix.dtype = CHOLMOD_DOUBLE;
-  matrix.sorted = matrix.packed = 1;
-  BlockOrder result;
-  result.position_to_vertex.resize(vertices);
-  const bool metis = ordering == Ordering::metis;
-  const int ok = metis ? cholmod_metis(&matrix, nullptr, 0, 0, result.position_to_vertex.data(), &common)
-                       : cholmod_amd(&matrix, nullptr, 0, result.position_to_vertex.data(), &common);
-  const int status = common.status;
-  cholmod_finish(&common);
-  if (ok == 0) {
-    if (status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw std::logic_error("SuiteSparse refused to order a graph, status " + std::to_string(status));
-  }
-  result.name = metis ? "METIS" : "AMD";
-  return result;
+  return {order_by_amd(graph), "AMD"};
 }
 
 }  // namespace brachium::fem

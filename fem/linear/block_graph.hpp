@@ -2,6 +2,7 @@
 /// The pattern of a matrix by blocks: unknowns that share their adjacency become one vertex, so that ordering
 /// and symbolic factorisation work on a graph a third of the size with a ninth of the edges.
 
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,14 @@ struct BlockOrder {
   std::string name;  ///< "METIS" or "AMD"
 };
 
-/// Order of elimination of the vertices, METIS or AMD of SuiteSparse on the graph.
+/// Order of elimination of the vertices. METIS (Karypis & Kumar 1998, doi:10.1137/S1064827595287997): nested
+/// dissection, the better of two separators each time, parts up to 10 % out of balance; AMD of SuiteSparse
+/// (Amestoy, Davis & Duff 2004, doi:10.1145/1024074.1024081). The same for the same graph, whatever else the
+/// process does.
 BlockOrder order(const BlockGraph& graph, Ordering ordering);
+
+/// METIS draws its random numbers from one generator for the whole process and sets its seed when it starts:
+/// who calls it, directly or through SuiteSparse, holds this.
+std::mutex& metis_mutex();
 
 }  // namespace brachium::fem

@@ -129,7 +129,8 @@ std::vector<Multifrontal::Child> Multifrontal::children_of(int f, const DenseFro
 
 DenseFront Multifrontal::view(int f) const {
   const Front& shape = tree_.fronts[f];
-  return DenseFront{.pivots = shape.pivots, .updates = shape.updates, .packed_l = factor_.l.get() + shape.factor_start};
+  return DenseFront{
+      .pivots = shape.pivots, .updates = shape.updates, .packed_l = factor_.l.get() + shape.factor_start};
 }
 
 void Multifrontal::eliminate(int f, Job& job) {

@@ -86,8 +86,8 @@ struct Elimination {
     b.d[k + 1] = d1;
     b.e[k] = e;
     b.e[k + 1] = 0.0;
-    growth[k] += std::abs(d0) + std::abs(e);
-    growth[k + 1] += std::abs(d1) + std::abs(e);
+    growth[k] += std::abs(d0);
+    growth[k + 1] += std::abs(d1);
     const double p0 = d0 / e, p1 = d1 / e, q = 1.0 / (e * (p0 * p1 - 1.0));
     a(k + 1, k) = 0.0;  // of L
     double l[2][kBlock];

@@ -9,6 +9,7 @@
 
 #include "data/model/parallel.hpp"
 #include "fem/linear/blas_threads.hpp"
+#include "fem/linear/block_graph.hpp"
 #include "fem/linear/linear_checks.hpp"
 #include "fem/linear/stopwatch.hpp"
 
@@ -53,6 +54,7 @@ void UmfpackLu::analyse(int n, const FullPattern& pattern) {
   free_numeric();
   if (symbolic_ != nullptr) umfpack_di_free_symbolic(&symbolic_);
   std::vector<double> info(UMFPACK_INFO);
+  const std::lock_guard lock(metis_mutex());
   check_status(umfpack_di_symbolic(n_, n_, column_start_.data(), row_.data(), nullptr, &symbolic_,
                                    control_.data(), info.data()));
   statistics_ = {};
