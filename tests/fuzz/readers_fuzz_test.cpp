@@ -7,6 +7,7 @@
 #include <random>
 
 #include "data/io/csv.hpp"
+#include "data/io/mesh_file.hpp"
 #include "data/io/noraxon.hpp"
 #include "data/io/opensim_file.hpp"
 #include "data/io/session_description.hpp"
@@ -165,6 +166,53 @@ TEST(Fuzz, Subject) {
   subject.verdicts.push_back(
       {"B", "strength", "1", 1.0, 1.1, 0.5, 2.0, 0.1, 0.9, 1.3, 0.0, "identified", ""});
   survive("s.toml", subject_to_toml(subject), 1000, [](const auto& file) { read_subject(file); });
+}
+
+/// Damages the sample and reads it; what is read nevertheless must be a sound mesh of finite numbers.
+void survive_mesh(const std::string& sample, unsigned rounds) {
+  SCOPED_TRACE(sample);
+  const std::string bytes = tests::slurp(tests::source_dir() / "tests/data/io/meshes" / sample);
+  ASSERT_FALSE(bytes.empty());
+  MeshReadOptions options;
+  options.length_unit = "mm";
+  survive(sample, bytes, rounds, [&](const auto& file) {
+    const data::Mesh mesh = read_mesh(file, options).mesh;
+    EXPECT_TRUE(data::check_structure(mesh).empty());
+    for (const auto* fields : {&mesh.point_fields, &mesh.cell_fields}) {
+      for (const auto& [name, field] : *fields) EXPECT_TRUE(field.allFinite()) << name;
+    }
+  });
+}
+
+TEST(Fuzz, GmshMeshes) {
+  for (const char* name : {"hex8_22.msh", "hex27_22_binary.msh", "tet10_41.msh", "hex20_41_binary.msh"})
+    survive_mesh(name, 500);
+}
+
+TEST(Fuzz, VtkMeshes) {
+  for (const char* name :
+       {"hex27_ascii.vtu", "hex27_inline_zlib.vtu", "hex27_appended.vtu", "hex27_raw_zlib.vtu",
+        "hex27_raw.vtu", "hex27_42.vtk", "hex27_42_binary.vtk", "hex27_51.vtk", "hex20_51_binary.vtk"})
+    survive_mesh(name, 300);
+}
+
+TEST(Fuzz, FebioMeshes) {
+  for (const char* name : {"hex8_25.feb", "hex20_30.feb", "hex27_40.feb"}) survive_mesh(name, 400);
+}
+
+TEST(Fuzz, CutMeshFilesAreRefused) {
+  // A cut that takes nothing but blanks or the last end tag of a section that is not needed may go unnoticed.
+  MeshReadOptions options;
+  options.length_unit = "mm";
+  const auto dir = tests::scratch_dir();
+  for (const std::string name : {"hex8_22.msh", "hex27_22_binary.msh", "tet10_41.msh", "hex20_41_binary.msh",
+                                 "hex27_raw_zlib.vtu", "hex27_inline.vtu", "hex27_40.feb"}) {
+    const std::string bytes = tests::slurp(tests::source_dir() / "tests/data/io/meshes" / name);
+    for (std::size_t n = 0; n < 200; ++n) {
+      const auto file = tests::write_file(dir / name, bytes.substr(0, (bytes.size() - 4) * n / 200));
+      EXPECT_THROW(read_mesh(file, options), data::InputError) << name << ' ' << n;
+    }
+  }
 }
 
 TEST(Fuzz, CutSessionFiles) {
