@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "data/io/gmsh_elements.hpp"
+#include "data/io/gmsh_fields.hpp"
 #include "data/io/mesh_cursor.hpp"
 #include "data/io/mesh_raw.hpp"
 
@@ -15,64 +17,6 @@ namespace brachium::io {
 namespace {
 
 using data::CellType;
-
-/// Place of our node a in Gmsh's list.
-constexpr int hexahedron_order[27] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
-                                      19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
-constexpr int tetrahedron_order[10] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-
-struct ElementKind {
-  int nodes;
-  int dimension;
-  std::optional<CellType> cell;
-  const char* name;
-};
-
-/// Gmsh's element types 1 .. 31; nothing for others.
-std::optional<ElementKind> kind_of(long long type) {
-  switch (type) {
-    case 1:
-      return ElementKind{2, 1, {}, "line2"};
-    case 2:
-      return ElementKind{3, 2, {}, "tri3"};
-    case 3:
-      return ElementKind{4, 2, {}, "quad4"};
-    case 4:
-      return ElementKind{4, 3, CellType::tet4, "tet4"};
-    case 5:
-      return ElementKind{8, 3, CellType::hex8, "hex8"};
-    case 6:
-      return ElementKind{6, 3, {}, "prism6"};
-    case 7:
-      return ElementKind{5, 3, {}, "pyramid5"};
-    case 8:
-      return ElementKind{3, 1, {}, "line3"};
-    case 9:
-      return ElementKind{6, 2, {}, "tri6"};
-    case 10:
-      return ElementKind{9, 2, {}, "quad9"};
-    case 11:
-      return ElementKind{10, 3, CellType::tet10, "tet10"};
-    case 12:
-      return ElementKind{27, 3, CellType::hex27, "hex27"};
-    case 13:
-      return ElementKind{18, 3, {}, "prism18"};
-    case 14:
-      return ElementKind{14, 3, {}, "pyramid14"};
-    case 15:
-      return ElementKind{1, 0, {}, "point"};
-    case 16:
-      return ElementKind{8, 2, {}, "quad8"};
-    case 17:
-      return ElementKind{20, 3, CellType::hex20, "hex20"};
-    case 18:
-      return ElementKind{15, 3, {}, "prism15"};
-    case 19:
-      return ElementKind{13, 3, {}, "pyramid13"};
-    default:
-      return std::nullopt;
-  }
-}
 
 class GmshReader {
  public:
@@ -104,7 +48,7 @@ class GmshReader {
         elements = true;
         v4_ ? read_elements_4() : read_elements_2();
       } else if (section == "$NodeData" || section == "$ElementData") {
-        read_data(section == "$NodeData");
+        fields_.read(in_, binary_, section == "$NodeData", raw_);
       } else {
         skip(section);
         continue;
@@ -268,8 +212,8 @@ class GmshReader {
     }
   }
 
-  ElementKind known_kind(long long type) {
-    const auto kind = kind_of(type);
+  GmshElement known_kind(long long type) {
+    const auto kind = gmsh_element(type);
     if (!kind) {
       in_.fail("mesh-cell-type", fmt::format("element type {} of Gmsh is not known", type),
                "use first or second order tetrahedra or hexahedra");
@@ -283,7 +227,7 @@ class GmshReader {
   }
 
   /// An element with its physical groups: of the entity (4.1), or the one it states (2.2; 0: none).
-  void add_element(long long tag, const ElementKind& kind, const std::vector<long long>& groups,
+  void add_element(long long tag, const GmshElement& kind, const std::vector<long long>& groups,
                    long long entity) {
     file_nodes_.resize(static_cast<std::size_t>(kind.nodes));
     for (std::size_t i = 0; i < file_nodes_.size(); ++i) {
@@ -317,7 +261,7 @@ class GmshReader {
       }
       cell_of_element_[tag] = static_cast<int>(raw_.types.size());
       raw_.add_cell(*kind.cell, raw_.regions.index(region), file_nodes_,
-                    data::corners_per_cell(*kind.cell) == 8 ? hexahedron_order : tetrahedron_order);
+                    data::corners_per_cell(*kind.cell) == 8 ? gmsh_hexahedron_order : gmsh_tetrahedron_order);
     }
   }
 
@@ -342,7 +286,7 @@ class GmshReader {
         type = in_.integer("an element type");
         tags = in_.integer("a number of tags");
       }
-      const ElementKind kind = known_kind(type);
+      const GmshElement kind = known_kind(type);
       checked(tags, "a number of tags", 2, 4);
       if (follow < 1) in_.fail("mesh-syntax", fmt::format("a block of {} elements", follow));
       for (long long k = 0; k < follow; ++k, ++done) {
@@ -366,7 +310,7 @@ class GmshReader {
     for (std::size_t b = 0; b < blocks; ++b) {
       const long long dimension = integer("the dimension of a block"),
                       entity = integer("the entity of a block");
-      const ElementKind kind = known_kind(integer("an element type"));
+      const GmshElement kind = known_kind(integer("an element type"));
       if (kind.dimension != dimension)
         in_.fail("mesh-syntax", fmt::format("elements {} in a block of dimension {}", kind.name, dimension));
       const std::size_t n =
@@ -383,49 +327,6 @@ class GmshReader {
     }
   }
 
-  /// $NodeData and $ElementData: one field, values by tag; what has none gets 0, which is noted.
-  void read_data(bool of_nodes) {
-    in_.set_binary(false);
-    const std::size_t texts = in_.count("the number of texts", 2);
-    in_.line();
-    std::string name;
-    for (std::size_t i = 0; i < texts; ++i) {
-      std::string_view text = in_.line();
-      if (i == 0) {
-        const std::size_t open = text.find('"'), close = text.rfind('"');
-        if (open != std::string_view::npos && close > open) text = text.substr(open + 1, close - open - 1);
-        name = text;
-      }
-    }
-    const std::size_t reals = in_.count("the number of real tags", 2);
-    for (std::size_t i = 0; i < reals; ++i) in_.number("a real tag");
-    const std::size_t integers = in_.count("the number of integer tags", 2);
-    long long tags[3] = {0, 0, 0};
-    for (std::size_t i = 0; i < integers; ++i) {
-      const long long value = in_.integer("an integer tag");
-      if (i < 3) tags[i] = value;
-    }
-    in_.line();
-    if (integers < 3 || tags[1] < 1 || tags[1] > 9)
-      in_.fail("mesh-syntax", "a field needs a step, 1 to 9 components and a count");
-    in_.set_binary(binary_);
-    const auto components = static_cast<std::size_t>(tags[1]);
-    const std::size_t n = checked(tags[2], "the number of values", 2 + 2 * components, 4 + 8 * components);
-    if (name.empty()) in_.fail("mesh-syntax", "a field without a name");
-    // Elements may come after their data: kept by tag until the end.
-    auto& values = fields_[{of_nodes, name}];
-    if (!values.empty()) {
-      raw_.note(fmt::format("field `{}` has several steps; the last is used", name));
-      values.clear();
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const long long tag = integer("a tag");
-      std::vector<double> row(components);
-      for (double& v : row) v = number("a value");
-      values.emplace_back(tag, std::move(row));
-    }
-  }
-
   void finish() {
     if (!unnamed_.empty()) {
       raw_.note(fmt::format(
@@ -437,27 +338,7 @@ class GmshReader {
       if (key.first >= 2 && std::ranges::find(used, name) == used.end())
         raw_.note(fmt::format("physical group `{}` is empty", name));
     }
-    for (const auto& [key, values] : fields_) {
-      const auto& [of_nodes, name] = key;
-      if (values.empty()) continue;
-      const auto& number = of_nodes ? node_ : cell_of_element_;
-      const std::size_t width = of_nodes ? raw_.points.size() : raw_.types.size();
-      Eigen::MatrixXd field = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(values.front().second.size()),
-                                                    static_cast<Eigen::Index>(width));
-      std::vector<char> given(width, 0);
-      for (const auto& [tag, row] : values) {
-        const auto found = number.find(tag);
-        if (found == number.end()) continue;  // of a surface or line element
-        field.col(found->second) =
-            Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size()));
-        given[static_cast<std::size_t>(found->second)] = 1;
-      }
-      const auto missing = std::ranges::count(given, 0);
-      if (missing > 0)
-        raw_.note(fmt::format("field `{}` has no value at {} {}; 0 is used there", name, missing,
-                              of_nodes ? "points" : "cells"));
-      (of_nodes ? raw_.point_fields : raw_.cell_fields)[name] = std::move(field);
-    }
+    fields_.finish(raw_, node_, cell_of_element_);
   }
 
   MeshCursor in_;
@@ -466,7 +347,7 @@ class GmshReader {
   std::map<std::pair<int, long long>, std::string> names_;                 // (dimension, group)
   std::map<std::pair<int, long long>, std::vector<long long>> groups_of_;  // (dimension, entity)
   std::unordered_map<long long, int> node_, cell_of_element_;
-  std::map<std::pair<bool, std::string>, std::vector<std::pair<long long, std::vector<double>>>> fields_;
+  GmshFields fields_;
   std::set<std::string> unnamed_;
   std::vector<long long> node_tags_;
   std::vector<int> file_nodes_;
