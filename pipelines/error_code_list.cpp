@@ -129,6 +129,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"excluded-channel", "A channel failed the quality thresholds and was left out, as the options say."},
       {"extra-field", "A row of a file has more fields than its header."},
       {"fibre-not-unit", "A fibre direction is no unit vector, or is missing."},
+      {"field-size",
+       "A field was given with another number of values than the mesh has points or degrees of freedom."},
       {"file-exists", "A file of that name exists and is not overwritten."},
       {"inactive-region", "A region is activated whose material has no active part."},
       {"incompressible-displacement", "An incompressible material needs a finite element with a pressure."},
@@ -228,6 +230,7 @@ const std::vector<ErrorCode>& error_codes() {
        "The orientation of the segment does not tell which way gravity pulls; the assumption made is "
        "stated."},
       {"no-joint-compatibility", "The compatibility option asked for exists for single muscles only."},
+      {"no-line-of-action", "A wrench whose resulting force vanishes has no line of action."},
       {"no-match", "A pattern of names matches nothing."},
       {"no-muscles", "A model without muscles was asked for."},
       {"no-phase", "A movement could not be divided into its phases (rest, ramp, constant velocity)."},
@@ -265,6 +268,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"penalty-chosen",
        "The bulk modulus around which the augmented Lagrange iteration makes a body exactly "
        "incompressible; the result does not depend on it."},
+      {"plane-misses-body", "A section was asked for where its plane does not cut the body."},
+      {"point-outside",
+       "A material point was asked for that lies in no cell of the mesh; the nearest cell is named."},
       {"pressure-undetermined",
        "The whole boundary of an incompressible body is held: its pressure is known only up to a "
        "constant."},
@@ -385,6 +391,7 @@ const std::vector<ErrorCode>& error_codes() {
        "A number is given in a unit of another dimension, or a key carries another unit than the option "
        "has."},
       {"wrong-version", "A file was written by another version of the program with another layout."},
+      {"zero-direction", "A direction was given as a vector without length."},
       {"zero-variance-moment",
        "The measured moment does not vary, so that nothing can be calibrated against it."},
   };
