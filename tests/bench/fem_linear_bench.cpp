@@ -169,8 +169,8 @@ void print(const char* name, int threads, const Figures& f, double gemm, const F
       "  %-22s %d  %8.3f  %8.4f %8.4f  %8.4f  %7.2f %8.2f  %5.1f %4.0f%%  %5.2f  %8.1f  %7.0f  %.0e\n", name,
       threads, f.analyse_s, f.cpu_s, f.wall_s, f.solve_cpu_s, f.flops * 1e-9, f.entries * 1e-6,
       f.flops * 1e-9 / seconds, 100.0 * f.flops * 1e-9 / seconds / (gemm * threads),
-      (threads == 1 ? reference.cpu_s : reference.wall_s) / seconds, f.negative, f.memory_mb,
-      f.backward_error);
+      reference.flops > 0.0 ? (threads == 1 ? reference.cpu_s : reference.wall_s) / seconds : 0.0, f.negative,
+      f.memory_mb, f.backward_error);
   std::fflush(stdout);
 }
 
