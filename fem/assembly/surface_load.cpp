@@ -25,7 +25,8 @@ LoadedSurface::LoadedSurface(const Discretisation& discretisation, const std::st
   for (Eigen::Index f = 0; f < count; ++f) {
     const data::CellFace& face = named.faces[static_cast<std::size_t>(f)];
     const auto local = data::face_nodes(mesh.type, face.face);
-    for (Eigen::Index a = 0; a < nodes; ++a) faces_(a, f) = mesh.cells(local[static_cast<std::size_t>(a)], face.cell);
+    for (Eigen::Index a = 0; a < nodes; ++a)
+      faces_(a, f) = mesh.cells(local[static_cast<std::size_t>(a)], face.cell);
   }
   const Quadrature& rule = face_quadrature(mesh.type);
   weight_ = rule.weights;
@@ -45,7 +46,8 @@ LoadedSurface::LoadedSurface(const Discretisation& discretisation, const std::st
 
 Eigen::Matrix3Xd LoadedSurface::reference(int face) const {
   Eigen::Matrix3Xd X(3, faces_.rows());
-  for (Eigen::Index a = 0; a < faces_.rows(); ++a) X.col(a) = discretisation_->mesh().points.col(faces_(a, face));
+  for (Eigen::Index a = 0; a < faces_.rows(); ++a)
+    X.col(a) = discretisation_->mesh().points.col(faces_(a, face));
   return X;
 }
 
@@ -68,7 +70,8 @@ void LoadedSurface::add_traction(const Eigen::Vector3d& traction_pa, Eigen::Vect
   }
 }
 
-void LoadedSurface::add_pressure(double pressure_pa, const Eigen::VectorXd& dofs, Eigen::VectorXd& force) const {
+void LoadedSurface::add_pressure(double pressure_pa, const Eigen::VectorXd& dofs,
+                                 Eigen::VectorXd& force) const {
   for (int f = 0; f < face_count(); ++f) {
     const Eigen::Matrix3Xd x = deformed(f, dofs);
     for (std::size_t q = 0; q < value_.size(); ++q) {
@@ -81,7 +84,8 @@ void LoadedSurface::add_pressure(double pressure_pa, const Eigen::VectorXd& dofs
   }
 }
 
-std::vector<FaceTangent> LoadedSurface::pressure_tangent(double pressure_pa, const Eigen::VectorXd& dofs) const {
+std::vector<FaceTangent> LoadedSurface::pressure_tangent(double pressure_pa,
+                                                         const Eigen::VectorXd& dofs) const {
   const Eigen::Index m = faces_.rows();
   std::vector<FaceTangent> tangents(static_cast<std::size_t>(face_count()));
   for (int f = 0; f < face_count(); ++f) {
@@ -95,15 +99,16 @@ std::vector<FaceTangent> LoadedSurface::pressure_tangent(double pressure_pa, con
       const Eigen::Matrix3d along_r = cross_matrix(t.col(0)), along_s = cross_matrix(t.col(1));
       for (Eigen::Index b = 0; b < m; ++b) {
         const Eigen::Matrix3d turned = derivative_[q](b, 1) * along_r - derivative_[q](b, 0) * along_s;
-        for (Eigen::Index a = 0; a < m; ++a) tangent.values.block<3, 3>(3 * a, 3 * b) -= (w * value_[q][a]) * turned;
+        for (Eigen::Index a = 0; a < m; ++a)
+          tangent.values.block<3, 3>(3 * a, 3 * b) -= (w * value_[q][a]) * turned;
       }
     }
   }
   return tangents;
 }
 
-void add_body_force(const Discretisation& discretisation, const Eigen::Matrix3Xd& force_n_m3, double amplitude,
-                    Eigen::VectorXd& force) {
+void add_body_force(const Discretisation& discretisation, const Eigen::Matrix3Xd& force_n_m3,
+                    double amplitude, Eigen::VectorXd& force) {
   const Quadrature& rule = discretisation.quadrature();
   const Eigen::MatrixXi& nodes = discretisation.nodes_of_cell();
   const data::CellType type = discretisation.mesh().type;

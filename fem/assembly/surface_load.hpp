@@ -1,5 +1,6 @@
 #pragma once
-/// Forces of a loaded surface by dof: tractions fixed in direction, and pressure that follows the deformed surface.
+/// Forces of a loaded surface by dof: tractions fixed in direction, and pressure that follows the deformed
+/// surface.
 ///
 /// | symbol   | meaning                                                                         | unit |
 /// |----------|---------------------------------------------------------------------------------|------|
@@ -10,8 +11,8 @@
 ///   dead      f_a = ∫ N_a t |X,r × X,s| dr ds
 ///   follower  f_a = -p ∫ N_a x,r × x,s dr ds
 ///             ∂f_a/∂u_b = -p ∫ N_a (N_b,s [x,r]× - N_b,r [x,s]×) dr ds
-/// (Bonet & Wood 2008, doi:10.1017/CBO9780511755446, section 8.5.2). The tangent is symmetric over a surface that is
-/// closed, or whose edge cannot move.
+/// (Bonet & Wood 2008, doi:10.1017/CBO9780511755446, section 8.5.2). The tangent is symmetric over a surface
+/// that is closed, or whose edge cannot move.
 
 #include <Eigen/Core>
 #include <string>
@@ -46,7 +47,7 @@ class LoadedSurface {
 
  private:
   const Discretisation* discretisation_;
-  Eigen::MatrixXi faces_;  ///< nodes per face x faces
+  Eigen::MatrixXi faces_;                    ///< nodes per face x faces
   std::vector<Eigen::VectorXd> value_;       ///< N by quadrature point
   std::vector<Eigen::MatrixXd> derivative_;  ///< N,r N,s by quadrature point
   Eigen::VectorXd weight_;
@@ -56,8 +57,9 @@ class LoadedSurface {
   Eigen::Matrix3Xd deformed(int face, const Eigen::VectorXd& dofs) const;
 };
 
-/// force += ∫ N_a b dV for a force per reference volume b [N/m3]: one column, or one per quadrature point (q + n_q c).
-void add_body_force(const Discretisation& discretisation, const Eigen::Matrix3Xd& force_n_m3, double amplitude,
-                    Eigen::VectorXd& force);
+/// force += ∫ N_a b dV for a force per reference volume b [N/m3]: one column, or one per quadrature point (q
+/// + n_q c).
+void add_body_force(const Discretisation& discretisation, const Eigen::Matrix3Xd& force_n_m3,
+                    double amplitude, Eigen::VectorXd& force);
 
 }  // namespace brachium::fem

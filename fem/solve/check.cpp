@@ -25,16 +25,18 @@ void check_connected(const data::Mesh& mesh, const std::vector<int>& part, Findi
   for (int p = 0; p < std::min(parts, 5); ++p) {
     const auto first = std::find(part.begin(), part.end(), p);
     const auto cell = static_cast<std::size_t>(first - part.begin());
-    list.push_back(fmt::format("{} cells from cell {} (region `{}`)", std::count(part.begin(), part.end(), p), cell,
-                               mesh.regions[static_cast<std::size_t>(mesh.region_of_cell[cell])]));
+    list.push_back(fmt::format("{} cells from cell {} (region `{}`)", std::count(part.begin(), part.end(), p),
+                               cell, mesh.regions[static_cast<std::size_t>(mesh.region_of_cell[cell])]));
   }
-  found.error("disconnected-mesh", fmt::format("the mesh falls into {} parts that share no points: {}{}", parts, fmt::join(list, "; "),
-                                               parts > 5 ? "; ..." : ""),
+  found.error("disconnected-mesh",
+              fmt::format("the mesh falls into {} parts that share no points: {}{}", parts,
+                          fmt::join(list, "; "), parts > 5 ? "; ..." : ""),
               "merge the points along the interfaces, or solve the parts one by one");
 }
 
 /// Names of rigid motions that nothing holds, part by part, in every phase that changes the supports.
-void check_support(const Problem& problem, const std::vector<int>& part, const std::vector<std::vector<Hold>>& holds, Findings& found) {
+void check_support(const Problem& problem, const std::vector<int>& part,
+                   const std::vector<std::vector<Hold>>& holds, Findings& found) {
   const data::Mesh& mesh = *problem.mesh;
   const int parts = *std::max_element(part.begin(), part.end()) + 1;
   std::vector<int> part_of_node(static_cast<std::size_t>(mesh.point_count()), -1);
@@ -62,11 +64,14 @@ void check_support(const Problem& problem, const std::vector<int>& part, const s
       }
       const std::vector<std::string> free = free_motions(mesh, nodes, on_part);
       if (free.empty()) continue;
-      const std::string text = fmt::format("nothing holds the body{} against {}", parts > 1 ? fmt::format("'s part {}", k + 1) : "",
-                                           fmt::join(free, ", "));
+      const std::string text =
+          fmt::format("nothing holds the body{} against {}",
+                      parts > 1 ? fmt::format("'s part {}", k + 1) : "", fmt::join(free, ", "));
       if (!told.insert(text).second) continue;
-      found.error("unsupported-motion", p == 0 ? text : fmt::format("{} once phase `{}` begins to release constraints", text, phase.name),
-                  "fix or prescribe displacements that stop these motions");
+      found.error(
+          "unsupported-motion",
+          p == 0 ? text : fmt::format("{} once phase `{}` begins to release constraints", text, phase.name),
+          "fix or prescribe displacements that stop these motions");
     }
   }
 }
@@ -86,13 +91,16 @@ void check_contradictions(const Problem& problem, Findings& found) {
       const auto to = phase.amplitude.find(problem.conditions[static_cast<std::size_t>(c)].name);
       if (to != phase.amplitude.end()) end[c] = to->second;
     }
-    for (const double part : {0.5, 1.0}) {  // two motions may agree at the end only
-      for (const Contradiction& c : constraints.contradictions(amplitude + part * (end - amplitude), 1e-7 * size)) {
+    for (const double part : {1.0, 0.5}) {  // two motions may agree at the end only
+      for (const Contradiction& c :
+           constraints.contradictions(amplitude + part * (end - amplitude), 1e-7 * size)) {
         if (!told.insert({c.first, c.second}).second) continue;
         found.error("contradictory-conditions",
-                    fmt::format("`{}` and `{}` hold {} nodes in the same direction and disagree, in phase `{}` by up to {:.3g} m (point {})",
+                    fmt::format("`{}` and `{}` hold {} nodes in the same direction and disagree, in phase "
+                                "`{}` by up to {:.3g} m (point {})",
                                 problem.conditions[static_cast<std::size_t>(c.first)].name,
-                                problem.conditions[static_cast<std::size_t>(c.second)].name, c.nodes, phase.name, c.difference_m, c.node),
+                                problem.conditions[static_cast<std::size_t>(c.second)].name, c.nodes,
+                                phase.name, c.difference_m, c.node),
                     "free the component in one of them, or make both move alike");
       }
     }
@@ -103,20 +111,25 @@ void check_contradictions(const Problem& problem, Findings& found) {
 /// A continuous pressure is fixed by the boundary's freedom to move; held everywhere, only up to a constant.
 void check_pressure(const Problem& problem, const std::vector<std::vector<Hold>>& holds, Findings& found) {
   if (pressure_space(problem.formulation) != PressureSpace::continuous) return;
-  if (std::none_of(problem.materials.begin(), problem.materials.end(), [](const RegionMaterial& m) { return std::isinf(m.volumetric.bulk_modulus_pa); })) {
+  if (std::none_of(problem.materials.begin(), problem.materials.end(),
+                   [](const RegionMaterial& m) { return std::isinf(m.volumetric.bulk_modulus_pa); })) {
     return;
   }
-  std::vector<Eigen::Matrix3d> held(static_cast<std::size_t>(problem.mesh->point_count()), Eigen::Matrix3d::Zero());
+  std::vector<Eigen::Matrix3d> held(static_cast<std::size_t>(problem.mesh->point_count()),
+                                    Eigen::Matrix3d::Zero());
   for (const auto& list : holds) {
-    for (const Hold& hold : list) held[static_cast<std::size_t>(hold.node)] += hold.direction * hold.direction.transpose();
+    for (const Hold& hold : list)
+      held[static_cast<std::size_t>(hold.node)] += hold.direction * hold.direction.transpose();
   }
   for (const data::CellFace& face : data::boundary_faces(*problem.mesh)) {
     for (const int local : data::face_nodes(problem.mesh->type, face.face)) {
       if (held[static_cast<std::size_t>(problem.mesh->cells(local, face.cell))].determinant() < 1e-12) return;
     }
   }
-  found.error("pressure-undetermined", "the whole boundary of an incompressible body is held: its pressure is known only up to a constant",
-              "free a part of the boundary, give a finite bulk modulus, or use a condensed formulation");
+  found.error(
+      "pressure-undetermined",
+      "the whole boundary of an incompressible body is held: its pressure is known only up to a constant",
+      "free a part of the boundary, give a finite bulk modulus, or use a condensed formulation");
 }
 
 }  // namespace
@@ -132,8 +145,8 @@ std::vector<Diagnostic> check(const Problem& problem) {
   if (found.any_error()) return found.list;
   if (mesh.type != cell_type(problem.formulation)) {
     found.error("cell-type-mismatch",
-                fmt::format("`{}` needs {} cells, the mesh has {}", to_string(problem.formulation), data::to_string(cell_type(problem.formulation)),
-                            data::to_string(mesh.type)),
+                fmt::format("`{}` needs {} cells, the mesh has {}", to_string(problem.formulation),
+                            data::to_string(cell_type(problem.formulation)), data::to_string(mesh.type)),
                 "elevate the mesh, or choose a formulation for its cells");
   }
   check_materials(problem, found);
@@ -142,7 +155,8 @@ std::vector<Diagnostic> check(const Problem& problem) {
   check_programme(problem, found);
   const std::vector<int> part = connected_parts(mesh);
   check_connected(mesh, part, found);
-  if (!found.conditions_sound) return found.list;  // supports cannot be judged where conditions are not understood
+  if (!found.conditions_sound)
+    return found.list;  // supports cannot be judged where conditions are not understood
   check_support(problem, part, holds, found);
   check_contradictions(problem, found);
   check_pressure(problem, holds, found);

@@ -12,7 +12,9 @@ namespace brachium::fem {
 void check_materials(const Problem& problem, Findings& found) {
   const data::Mesh& mesh = *problem.mesh;
   if (problem.materials.size() != mesh.regions.size()) {
-    found.error("region-materials", fmt::format("the mesh has {} regions, and {} materials are given", mesh.regions.size(), problem.materials.size()),
+    found.error("region-materials",
+                fmt::format("the mesh has {} regions, and {} materials are given", mesh.regions.size(),
+                            problem.materials.size()),
                 "give one material per region, in the mesh's order");
   }
   for (std::size_t r = 0; r < std::min(problem.materials.size(), mesh.regions.size()); ++r) {
@@ -27,11 +29,17 @@ void check_materials(const Problem& problem, Findings& found) {
     }
     const double k = material.volumetric.bulk_modulus_pa;
     if (!(k > 0.0)) {
-      found.error("parameter-range", fmt::format("region `{}`: `bulk_modulus_pa` is {}, it must be greater than 0 (infinite: incompressible)", mesh.regions[r], k), "");
+      found.error(
+          "parameter-range",
+          fmt::format(
+              "region `{}`: `bulk_modulus_pa` is {}, it must be greater than 0 (infinite: incompressible)",
+              mesh.regions[r], k),
+          "");
     }
     if (std::isinf(k) && pressure_space(problem.formulation) == PressureSpace::none) {
       found.error("incompressible-displacement",
-                  fmt::format("region `{}` is incompressible, and `{}` has no pressure", mesh.regions[r], to_string(problem.formulation)),
+                  fmt::format("region `{}` is incompressible, and `{}` has no pressure", mesh.regions[r],
+                              to_string(problem.formulation)),
                   "give a finite bulk modulus, or a formulation with a pressure");
     }
   }
@@ -41,14 +49,17 @@ namespace {
 
 void check_size(Eigen::Index size, Eigen::Index wanted, const char* name, Findings& found) {
   if (size == 0 || size == wanted) return;
-  found.error("tissue-size", fmt::format("`{}` has {} values, the cells have {} quadrature points", name, size, wanted),
+  found.error("tissue-size",
+              fmt::format("`{}` has {} values, the cells have {} quadrature points", name, size, wanted),
               "fields are given at the quadrature points of the formulation");
 }
 
 void check_unit_interval(const Eigen::VectorXd& values, const char* name, Findings& found) {
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (values[i] >= 0.0 && values[i] <= 1.0) continue;
-    found.error("blending-range", fmt::format("`{}` is {} at quadrature point {}, it must be in [0, 1]", name, values[i], i), "");
+    found.error("blending-range",
+                fmt::format("`{}` is {} at quadrature point {}, it must be in [0, 1]", name, values[i], i),
+                "");
     return;
   }
 }
@@ -68,8 +79,10 @@ void check_tissue(const Problem& problem, Findings& found) {
   for (std::size_t r = 0; r < std::min(problem.materials.size(), mesh.regions.size()); ++r) {
     if (!needs_fibres(problem.materials[r].material)) continue;
     if (tissue.fibre.cols() == 0) {
-      found.error("missing-fibres", fmt::format("the law of region `{}` has fibres, and no fibre field is given", mesh.regions[r]),
-                  "give a fibre field");
+      found.error(
+          "missing-fibres",
+          fmt::format("the law of region `{}` has fibres, and no fibre field is given", mesh.regions[r]),
+          "give a fibre field");
       continue;
     }
     Eigen::Index bad = 0;
@@ -88,8 +101,9 @@ void check_tissue(const Problem& problem, Findings& found) {
     }
     if (bad > 0) {
       found.error("fibre-not-unit",
-                  fmt::format("region `{}`: the fibres at {} quadrature points are no unit vectors, first in cell {} (length {})", mesh.regions[r],
-                              bad, first_cell, length),
+                  fmt::format("region `{}`: the fibres at {} quadrature points are no unit vectors, first in "
+                              "cell {} (length {})",
+                              mesh.regions[r], bad, first_cell, length),
                   "normalise the field; a zero vector means that the direction is missing");
     }
   }

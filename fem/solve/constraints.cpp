@@ -19,7 +19,8 @@ int axis_of(const Eigen::Vector3d& q) {
 
 }  // namespace
 
-Constraints::Constraints(const Problem& problem, int node_count, int dof_count, const std::vector<std::string>& released)
+Constraints::Constraints(const Problem& problem, int node_count, int dof_count,
+                         const std::vector<std::string>& released)
     : problem_(&problem), held_(static_cast<std::size_t>(dof_count), 0) {
   std::map<int, std::vector<Hold>> by_node;
   for (std::size_t c = 0; c < problem.conditions.size(); ++c) {
@@ -37,7 +38,8 @@ Constraints::Constraints(const Problem& problem, int node_count, int dof_count, 
     if (held.count == 3) {
       held_[dof] = held_[dof + 1] = held_[dof + 2] = 1;
     } else if (along_axes) {
-      for (int k = 0; k < held.count; ++k) held_[dof + static_cast<std::size_t>(axis_of(held.direction.col(k)))] = 1;
+      for (int k = 0; k < held.count; ++k)
+        held_[dof + static_cast<std::size_t>(axis_of(held.direction.col(k)))] = 1;
     } else {
       Eigen::Matrix3d frame;
       frame.col(0) = held.direction.col(0);
@@ -50,10 +52,12 @@ Constraints::Constraints(const Problem& problem, int node_count, int dof_count, 
   if (oblique.empty()) return;
   frames_.resize(3, 3 * static_cast<Eigen::Index>(node_count));
   for (Eigen::Index n = 0; n < node_count; ++n) frames_.middleCols<3>(3 * n).setIdentity();
-  for (const auto& [node, frame] : oblique) frames_.middleCols<3>(3 * static_cast<Eigen::Index>(node)) = frame;
+  for (const auto& [node, frame] : oblique)
+    frames_.middleCols<3>(3 * static_cast<Eigen::Index>(node)) = frame;
 }
 
-Constraints::Held Constraints::evaluate(const Node& node, const Eigen::VectorXd& amplitude, double tolerance_m,
+Constraints::Held Constraints::evaluate(const Node& node, const Eigen::VectorXd& amplitude,
+                                        double tolerance_m,
                                         std::vector<Contradiction>* contradictions) const {
   Held held;
   for (const Hold& hold : node.holds) {
@@ -81,7 +85,9 @@ Constraints::Held Constraints::evaluate(const Node& node, const Eigen::VectorXd&
   return held;
 }
 
-int Constraints::held_count() const { return static_cast<int>(std::count(held_.begin(), held_.end(), char{1})); }
+int Constraints::held_count() const {
+  return static_cast<int>(std::count(held_.begin(), held_.end(), char{1}));
+}
 
 void Constraints::impose(const Eigen::VectorXd& amplitude, Eigen::VectorXd& dofs) const {
   for (const Node& node : nodes_) {
@@ -108,12 +114,14 @@ Eigen::VectorXd Constraints::not_borne(const Eigen::VectorXd& force) const {
   for (const Node& node : nodes_) {
     const Held held = evaluate(node, zero, 0.0, nullptr);
     auto f = rest.segment<3>(3 * node.node);
-    for (int k = 0; k < held.count; ++k) f -= Eigen::Vector3d(held.direction.col(k).dot(f) * held.direction.col(k));
+    for (int k = 0; k < held.count; ++k)
+      f -= Eigen::Vector3d(held.direction.col(k).dot(f) * held.direction.col(k));
   }
   return rest;
 }
 
-std::vector<Contradiction> Constraints::contradictions(const Eigen::VectorXd& amplitude, double tolerance_m) const {
+std::vector<Contradiction> Constraints::contradictions(const Eigen::VectorXd& amplitude,
+                                                       double tolerance_m) const {
   std::vector<Contradiction> all, pairs;
   for (const Node& node : nodes_) evaluate(node, amplitude, tolerance_m, &all);
   for (const Contradiction& c : all) {

@@ -1,9 +1,9 @@
 #pragma once
-/// All conditions that hold displacements at once: an orthonormal set of held directions at every node, whatever planes,
-/// components and motions meet there.
+/// All conditions that hold displacements at once: an orthonormal set of held directions at every node,
+/// whatever planes, components and motions meet there.
 ///
-/// At a node the conditions d_i . u = g_i(t) are made orthonormal in their order (Gram-Schmidt), q_k . u = h_k(t). A
-/// direction that the earlier ones already hold adds nothing, and must agree with them.
+/// At a node the conditions d_i . u = g_i(t) are made orthonormal in their order (Gram-Schmidt), q_k . u =
+/// h_k(t). A direction that the earlier ones already hold adds nothing, and must agree with them.
 
 #include <Eigen/Core>
 #include <string>
@@ -24,10 +24,11 @@ struct Contradiction {
 class Constraints {
  public:
   /// `released`: names of conditions that hold no more. Dofs: 3 per node, then pressures (never held).
-  Constraints(const Problem& problem, int node_count, int dof_count, const std::vector<std::string>& released);
+  Constraints(const Problem& problem, int node_count, int dof_count,
+              const std::vector<std::string>& released);
 
-  const std::vector<char>& held() const { return held_; }            ///< by dof, in the nodes' frames
-  const Eigen::Matrix3Xd& frames() const { return frames_; }         ///< empty, or 3 x 3 n_nodes
+  const std::vector<char>& held() const { return held_; }     ///< by dof, in the nodes' frames
+  const Eigen::Matrix3Xd& frames() const { return frames_; }  ///< empty, or 3 x 3 n_nodes
   int held_count() const;
 
   /// Moves the held components of `dofs` (global axes) to their values at the amplitudes (by condition).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fem/linear/stopwatch.hpp"
 
@@ -28,7 +29,8 @@ double stiffness_scale(const Problem& problem) {
   MaterialResponse<double> rest{}, passive{}, active{};
   for (const RegionMaterial& region : problem.materials) {
     for (const double muscle : {1.0, 0.0}) {
-      if (muscle == 0.0 && (problem.tissue.muscle.size() == 0 || problem.tissue.muscle.minCoeff() > 0.0)) continue;
+      if (muscle == 0.0 && (problem.tissue.muscle.size() == 0 || problem.tissue.muscle.minCoeff() > 0.0))
+        continue;
       evaluate(region.material, stretched(1.0, 0.0, muscle), rest);
       for (const double c : rest.CC) scale = std::max(scale, std::abs(c));
       for (const double stretch : {0.8, 1.0, 1.2, 1.4}) {
@@ -42,7 +44,8 @@ double stiffness_scale(const Problem& problem) {
 }
 
 Equations::Equations(const Problem& problem, const SolveOptions& options)
-    : problem_(&problem), discretisation_(std::make_shared<Discretisation>(problem.mesh, problem.formulation)) {
+    : problem_(&problem),
+      discretisation_(std::make_shared<Discretisation>(problem.mesh, problem.formulation)) {
   stiffness_pa_ = stiffness_scale(problem);
   const PressureSpace space = pressure_space(problem.formulation);
   condensed_ = space == PressureSpace::constant || space == PressureSpace::linear_discontinuous;
@@ -50,17 +53,24 @@ Equations::Equations(const Problem& problem, const SolveOptions& options)
     if (condensed_ && std::isinf(region.volumetric.bulk_modulus_pa)) {
       penalty_pa_ = options.penalty_pa > 0.0 ? options.penalty_pa : penalty_over_stiffness * stiffness_pa_;
     }
+    if (space != PressureSpace::continuous && std::isfinite(region.volumetric.bulk_modulus_pa)) {
+      stiffest_pa_ = std::max(stiffest_pa_, region.volumetric.bulk_modulus_pa);
+    }
     rate_dependent_ = rate_dependent_ || is_rate_dependent(region.material);
   }
+  stiffest_pa_ = std::max({stiffest_pa_, penalty_pa_, stiffness_pa_});
   volume_ = discretisation_->volume();
   cell_size_m_ = std::cbrt(volume_ / discretisation_->cell_count());
-  assembly_ = std::make_unique<Assembly>(discretisation_, problem.materials, problem.tissue, penalty_pa_, options.threads);
+  assembly_ = std::make_unique<Assembly>(discretisation_, problem.materials, problem.tissue, penalty_pa_,
+                                         options.threads);
   loads_ = std::make_unique<Loads>(problem, *discretisation_);
 }
 
 bool Equations::constrain(const std::vector<std::string>& released) {
-  auto next = std::make_unique<Constraints>(*problem_, discretisation_->node_count(), discretisation_->dof_count(), released);
-  const bool same = constraints_ && next->held() == constraints_->held() && next->frames().cols() == constraints_->frames().cols() &&
+  auto next = std::make_unique<Constraints>(*problem_, discretisation_->node_count(),
+                                            discretisation_->dof_count(), released);
+  const bool same = constraints_ && next->held() == constraints_->held() &&
+                    next->frames().cols() == constraints_->frames().cols() &&
                     next->frames() == constraints_->frames();
   constraints_ = std::move(next);
   if (same) return false;
@@ -75,7 +85,9 @@ void Equations::add(const Eigen::VectorXd& increment, double scale, Eigen::Vecto
   dofs += scale * unknowns_.extend(increment);
 }
 
-double Equations::displacement_norm(const Eigen::VectorXd& by_unknown) const { return by_unknown.head(displacement_unknowns_).norm(); }
+double Equations::displacement_norm(const Eigen::VectorXd& by_unknown) const {
+  return by_unknown.head(displacement_unknowns_).norm();
+}
 
 void Equations::finish(Evaluation& e, const Configuration& configuration, const LoadPoint& load) const {
   if (e.sums.failure) return;
@@ -83,16 +95,21 @@ void Equations::finish(Evaluation& e, const Configuration& configuration, const 
   if (released_force_.size() > 0) e.external += load.released * released_force_;
   e.residual = unknowns_.restrict(e.internal - e.external);
   const Eigen::Index displacements = 3 * static_cast<Eigen::Index>(discretisation_->node_count());
-  const double floor = 1e-6 * stiffness_pa_ * cell_size_m_ * cell_size_m_ * std::sqrt(static_cast<double>(discretisation_->cell_count()));
+  const double area =
+      cell_size_m_ * cell_size_m_ * std::sqrt(static_cast<double>(discretisation_->cell_count()));
+  const double floor = 1e-6 * stiffness_pa_ * area;
   e.reference = std::max({e.internal.head(displacements).norm(), e.external.head(displacements).norm(),
                           1e-3 * e.sums.cell_force_norm, floor});
   e.residual_norm = displacement_norm(e.residual);
   e.relative = e.residual_norm / e.reference;
+  e.rounding = 50.0 * std::numeric_limits<double>::epsilon() * stiffest_pa_ * area / e.reference;
   if (saddle_point()) {
     const Eigen::Index n = discretisation_->pressure_node_count();
-    e.relative = std::max(e.relative, e.internal.tail(n).norm() * std::sqrt(static_cast<double>(n)) / volume_);
+    e.relative =
+        std::max(e.relative, e.internal.tail(n).norm() * std::sqrt(static_cast<double>(n)) / volume_);
   }
-  if (!std::isfinite(e.relative)) e.sums.failure = AssemblyFailure{e.sums.smallest_jacobian_cell, e.sums.smallest_jacobian};
+  if (!std::isfinite(e.relative))
+    e.sums.failure = AssemblyFailure{e.sums.smallest_jacobian_cell, e.sums.smallest_jacobian};
 }
 
 Eigen::MatrixXd Equations::volumetric_pressure(const Configuration& configuration) {

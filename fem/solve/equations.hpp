@@ -1,12 +1,15 @@
 #pragma once
-/// The equations of equilibrium over the unknowns: R(u) = f_int(u) - f_ext(u) = 0 at the components that nothing holds.
+/// The equations of equilibrium over the unknowns: R(u) = f_int(u) - f_ext(u) = 0 at the components that
+/// nothing holds.
 ///
 /// How small a residual is, is judged against forces that really act (dimensionless):
 ///   relative = max( |R_u| / reference,  |R_p| √n_p / V ),
-///   reference = max( |f_int|, |f_ext|, 1e-3 (Σ_cells |f_cell|^2)^(1/2), 1e-6 E h^2 √n_cells )
-/// R_u at free displacements, f_int at all of them: at equilibrium it consists of reactions and loads. A body that is
-/// stressed but bears on nothing (active, unloaded) is judged by the forces of its cells before they cancel; a body at
-/// rest by those of a strain of 1e-6 (E: the stiffness at rest, h^3: the mean volume of a cell). R_p are the residuals of
+///   reference = max( |f_int|, |f_ext|, 1e-3 (Σ_cells |f_cell|^2)^(1/2), 1e-6 E h^2 √n_cells ),
+///   rounding  = 50 ε max(E, κ) h^2 √n_cells / reference:  a relative residual below cannot be told from 0
+/// R_u at free displacements, f_int at all of them: at equilibrium it consists of reactions and loads. A body
+/// that is stressed but bears on nothing (active, unloaded) is judged by the forces of its cells before they
+/// cancel; a body at rest by those of a strain of 1e-6 (E: the stiffness at rest, κ: the bulk modulus or
+/// penalty of condensed formulations, h^3: the mean volume of a cell, ε = 2.2e-16). R_p are the residuals of
 /// continuous pressures [m3], n_p of them, V the volume.
 
 #include <memory>
@@ -29,10 +32,12 @@ struct Evaluation {
   double residual_norm = 0.0;          ///< N, free displacements
   double reference = 0.0;              ///< N
   double relative = 0.0;
+  double rounding = 0.0;  ///< of the relative residual
   bool valid() const { return !sums.failure; }
 };
 
-/// Tangent over the unknowns: the lower triangle of the internal part on the unknowns' pattern, and the loads' part.
+/// Tangent over the unknowns: the lower triangle of the internal part on the unknowns' pattern, and the
+/// loads' part.
 struct TangentValues {
   std::vector<double> lower;
   std::vector<FaceTangent> loads;  ///< ∂f_ext/∂u, in global axes
@@ -48,10 +53,12 @@ class Equations {
   const Constraints& constraints() const { return *constraints_; }
   const Unknowns& unknowns() const { return unknowns_; }
   const Loads& loads() const { return *loads_; }
-  double penalty_pa() const { return penalty_pa_; }         ///< 0 where no region is condensed and incompressible
-  double stiffness_pa() const { return stiffness_pa_; }     ///< stiffest region at rest, or ten times its active stress
+  double penalty_pa() const { return penalty_pa_; }  ///< 0 where no region is condensed and incompressible
+  double stiffness_pa() const {
+    return stiffness_pa_;
+  }  ///< stiffest region at rest, or ten times its active stress
   bool augmented() const { return penalty_pa_ > 0.0; }
-  bool condensed() const { return condensed_; }             ///< pressures are discontinuous and eliminated cell by cell
+  bool condensed() const { return condensed_; }  ///< pressures are discontinuous and eliminated cell by cell
   bool rate_dependent() const { return rate_dependent_; }
   bool saddle_point() const { return discretisation_->pressure_node_count() > 0; }
   /// Loads that follow a surface with a free edge: the tangent is unsymmetric.
@@ -69,7 +76,8 @@ class Equations {
   /// The same with the tangent.
   Evaluation linearise(Configuration& configuration, const LoadPoint& load, TangentValues& tangent);
 
-  /// U'(θ) of condensed formulations at a configuration's displacements, without multipliers; pressures_per_cell x n_cells.
+  /// U'(θ) of condensed formulations at a configuration's displacements, without multipliers;
+  /// pressures_per_cell x n_cells.
   Eigen::MatrixXd volumetric_pressure(const Configuration& configuration);
   /// Internal forces by dof; the pressure is U'(θ) and the configuration's multiplier.
   Eigen::VectorXd internal_force(const Configuration& configuration);
@@ -81,7 +89,9 @@ class Equations {
   /// Unknowns that are displacements; they come first.
   Eigen::Index displacement_unknowns() const { return displacement_unknowns_; }
   /// The displacements of a vector by dof.
-  auto displacements(const Eigen::VectorXd& by_dof) const { return by_dof.head(3 * static_cast<Eigen::Index>(discretisation_->node_count())); }
+  auto displacements(const Eigen::VectorXd& by_dof) const {
+    return by_dof.head(3 * static_cast<Eigen::Index>(discretisation_->node_count()));
+  }
 
   long residual_evaluations = 0, tangent_evaluations = 0, pressure_evaluations = 0;
   double seconds = 0.0;  ///< spent in the assembly
@@ -94,7 +104,7 @@ class Equations {
   std::unique_ptr<Constraints> constraints_;
   Unknowns unknowns_;
   Eigen::VectorXd released_force_;
-  double penalty_pa_ = 0.0, stiffness_pa_ = 0.0, cell_size_m_ = 0.0, volume_ = 0.0;
+  double penalty_pa_ = 0.0, stiffness_pa_ = 0.0, cell_size_m_ = 0.0, volume_ = 0.0, stiffest_pa_ = 0.0;
   bool rate_dependent_ = false, unsymmetric_ = false, condensed_ = false;
   Eigen::Index displacement_unknowns_ = 0;
 
@@ -102,8 +112,8 @@ class Equations {
   bool find_unsymmetry() const;
 };
 
-/// Stiffness that scales a problem: the largest entry of 2 dS/dC at rest over the regions, or ten times the largest
-/// active stress where that is more [Pa].
+/// Stiffness that scales a problem: the largest entry of 2 dS/dC at rest over the regions, or ten times the
+/// largest active stress where that is more [Pa].
 double stiffness_scale(const Problem& problem);
 
 }  // namespace brachium::fem

@@ -35,9 +35,10 @@ bool is_surface(const data::Mesh& mesh, const std::string& name) {
 }  // namespace
 
 bool is_constraint(const BoundaryCondition& condition) {
-  return std::visit(Overloaded{[](const DeadTraction&) { return false; }, [](const FollowerPressure&) { return false; },
-                               [](const BodyForce&) { return false; }, [](const auto&) { return true; }},
-                    condition.kind);
+  return std::visit(
+      Overloaded{[](const DeadTraction&) { return false; }, [](const FollowerPressure&) { return false; },
+                 [](const BodyForce&) { return false; }, [](const auto&) { return true; }},
+      condition.kind);
 }
 
 bool has_amplitude(const BoundaryCondition& condition) {
@@ -49,14 +50,16 @@ bool has_amplitude(const BoundaryCondition& condition) {
 std::vector<int> condition_points(const data::Mesh& mesh, const std::string& surface) {
   if (is_surface(mesh, surface)) return mesh.surface_points(surface);
   if (const auto found = mesh.node_sets.find(surface); found != mesh.node_sets.end()) return found->second;
-  throw data::InputError("missing-surface", fmt::format("the mesh has no surface or node set named `{}`", surface),
+  throw data::InputError("missing-surface",
+                         fmt::format("the mesh has no surface or node set named `{}`", surface),
                          data::suggest(surface, surface_names(mesh, true)));
 }
 
 void check_has_faces(const data::Mesh& mesh, const std::string& surface) {
   if (is_surface(mesh, surface)) return;
   if (mesh.node_sets.contains(surface)) {
-    throw data::InputError("missing-surface", fmt::format("`{}` is a set of nodes, and a load needs faces", surface),
+    throw data::InputError("missing-surface",
+                           fmt::format("`{}` is a set of nodes, and a load needs faces", surface),
                            data::suggest(surface, surface_names(mesh, false)));
   }
   throw data::InputError("missing-surface", fmt::format("the mesh has no surface named `{}`", surface),
@@ -76,7 +79,8 @@ Eigen::Vector3d plane_normal(const data::Mesh& mesh, const std::string& surface)
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
   const double extent = std::sqrt(axes.eigenvalues()[2]);
   if (!(axes.eigenvalues()[1] > 1e-12 * axes.eigenvalues()[2])) {
-    throw data::InputError("surface-not-plane", fmt::format("the points of `{}` lie on a line and span no plane", surface),
+    throw data::InputError("surface-not-plane",
+                           fmt::format("the points of `{}` lie on a line and span no plane", surface),
                            "a symmetry plane needs a surface");
   }
   Eigen::Vector3d normal = axes.eigenvectors().col(0);
@@ -86,9 +90,10 @@ Eigen::Vector3d plane_normal(const data::Mesh& mesh, const std::string& surface)
     reach = std::max(reach, (mesh.points.col(n) - centre).norm());
   }
   if (off > 1e-5 * reach) {
-    throw data::InputError("surface-not-plane",
-                           fmt::format("`{}` is not plane: a point lies {:.3g} m off, of {:.3g} m extent", surface, off, extent),
-                           "a symmetry plane must be plane; split the surface into its plane parts");
+    throw data::InputError(
+        "surface-not-plane",
+        fmt::format("`{}` is not plane: a point lies {:.3g} m off, of {:.3g} m extent", surface, off, extent),
+        "a symmetry plane must be plane; split the surface into its plane parts");
   }
   for (int i = 0; i < 3; ++i) {
     Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
@@ -108,15 +113,15 @@ std::vector<Hold> holds_of(const Problem& problem, int condition) {
   };
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     for (int i = 0; i < 3; ++i) {
-      const bool held =
-          std::visit(Overloaded{[i](const Fixed& x) { return x.components[static_cast<std::size_t>(i)]; },
-                                [i](const PrescribedDisplacement& x) { return !std::isnan(x.displacement_m[i]); },
-                                [i, k](const PrescribedField& x) {
-                                  const auto column = static_cast<Eigen::Index>(k);
-                                  return column < x.displacement_m.cols() && !std::isnan(x.displacement_m(i, column));
-                                },
-                                [](const RigidMotion&) { return true; }, [](const auto&) { return false; }},
-                     c.kind);
+      const bool held = std::visit(
+          Overloaded{[i](const Fixed& x) { return x.components[static_cast<std::size_t>(i)]; },
+                     [i](const PrescribedDisplacement& x) { return !std::isnan(x.displacement_m[i]); },
+                     [i, k](const PrescribedField& x) {
+                       const auto column = static_cast<Eigen::Index>(k);
+                       return column < x.displacement_m.cols() && !std::isnan(x.displacement_m(i, column));
+                     },
+                     [](const RigidMotion&) { return true; }, [](const auto&) { return false; }},
+          c.kind);
       if (held) hold(k, Eigen::Vector3d::Unit(i));
     }
   }

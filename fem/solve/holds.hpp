@@ -1,5 +1,6 @@
 #pragma once
-/// What a problem's conditions ask of single nodes: linear conditions  d . u = value(amplitude),  d a unit vector.
+/// What a problem's conditions ask of single nodes: linear conditions  d . u = value(amplitude),  d a unit
+/// vector.
 
 #include <Eigen/Core>
 #include <string>
@@ -11,10 +12,10 @@ namespace brachium::fem {
 
 /// One condition on one node.
 struct Hold {
-  int condition = 0;           ///< index into Problem::conditions
+  int condition = 0;  ///< index into Problem::conditions
   int node = 0;
-  int column = 0;              ///< of the node among the condition's points
-  Eigen::Vector3d direction;   ///< unit
+  int column = 0;             ///< of the node among the condition's points
+  Eigen::Vector3d direction;  ///< unit
 };
 
 /// Holds displacements, as opposed to loading.
@@ -22,7 +23,8 @@ bool is_constraint(const BoundaryCondition& condition);
 /// Moves with an amplitude of the programme.
 bool has_amplitude(const BoundaryCondition& condition);
 
-/// Points of a surface or node set, sorted. Throws InputError("missing-surface") with the nearest name of both.
+/// Points of a surface or node set, sorted. Throws InputError("missing-surface") with the nearest name of
+/// both.
 std::vector<int> condition_points(const data::Mesh& mesh, const std::string& surface);
 /// Throws InputError("missing-surface") when there is no such surface; says so when it is a node set.
 void check_has_faces(const data::Mesh& mesh, const std::string& surface);

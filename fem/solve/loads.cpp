@@ -6,7 +6,8 @@
 
 namespace brachium::fem {
 
-Loads::Loads(const Problem& problem, const Discretisation& discretisation) : dof_count_(discretisation.dof_count()) {
+Loads::Loads(const Problem& problem, const Discretisation& discretisation)
+    : dof_count_(discretisation.dof_count()) {
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     const BoundaryCondition& condition = problem.conditions[i];
     const int index = static_cast<int>(i);
@@ -38,7 +39,9 @@ Eigen::VectorXd Loads::force(const Eigen::VectorXd& amplitude, const Eigen::Vect
   return f;
 }
 
-bool Loads::has_pressure() const { return !pressures_.empty(); }
+bool Loads::has_pressure() const {
+  return !pressures_.empty();
+}
 
 std::vector<FaceTangent> Loads::tangent(const Eigen::VectorXd& amplitude, const Eigen::VectorXd& dofs) const {
   std::vector<FaceTangent> all;

@@ -1,6 +1,6 @@
 #pragma once
-/// Convergence history as text: fixed columns, one row an iteration, a line that closes each step, one that closes the
-/// whole.
+/// Convergence history as text: fixed columns, one row an iteration, a line that closes each step, one that
+/// closes the whole.
 
 #include <string>
 

@@ -9,7 +9,7 @@
 namespace brachium::fem {
 namespace {
 
-constexpr double chord_limit = 0.5;  // contraction from which on a factor is given up
+constexpr double chord_limit = 0.7;  // contraction from which on a factor is given up
 constexpr int most_trials = 8;
 constexpr double least_part = 1e-3;
 
@@ -34,12 +34,14 @@ double Newton::step_scale(const Configuration& configuration) const {
 
 bool Newton::arrived(const Point& p) const {
   if (equations_.augmented() && p.evaluation.sums.worst_volume > settings_.volume_tolerance) return false;
-  return p.evaluation.relative <= settings_.relative_residual;
+  return p.evaluation.relative <= std::max(settings_.relative_residual, p.evaluation.rounding);
 }
 
 bool Newton::chord_pays(const Point& p, double contraction) const {
-  if (!settings_.chord || !(contraction < chord_limit) || outcome_.chord >= settings_.max_chord_iterations) return false;
-  const double left = std::log(std::min(settings_.relative_residual / p.evaluation.relative, 0.5)) / std::log(std::max(contraction, 1e-12));
+  if (!settings_.chord || !(contraction < chord_limit) || outcome_.chord >= settings_.max_chord_iterations)
+    return false;
+  const double left = std::log(std::min(settings_.relative_residual / p.evaluation.relative, 0.5)) /
+                      std::log(std::max(contraction, 1e-12));
   return left <= 2.0 * factor_.cost_ratio();
 }
 
@@ -72,14 +74,16 @@ std::string Newton::new_factor(Point& p, const LoadPoint& load) {
   return std::isfinite(p.length) ? "" : "the tangent's factor gave a step that is not finite";
 }
 
-Newton::Point Newton::move(const Point& from, const Eigen::VectorXd& step, double part, const LoadPoint& load) {
+Newton::Point Newton::move(const Point& from, const Eigen::VectorXd& step, double part,
+                           const LoadPoint& load) {
   Point p;
   p.part = part;
   p.configuration = from.configuration;
   p.configuration.dofs += part * equations_.unknowns().extend(step);
   if (equations_.condensed()) {
     set_pressure(p, from.pressure + part * (from.excess + factor_.pressure_change(equations_, step)));
-    if (!p.pressure.allFinite() || !p.excess.allFinite()) p.configuration.multiplier.setZero();  // the evaluation names the cell
+    if (!p.pressure.allFinite() || !p.excess.allFinite())
+      p.configuration.multiplier.setZero();  // the evaluation names the cell
   }
   p.evaluation = equations_.evaluate(p.configuration, load);
   if (p.evaluation.valid()) correct(p);
@@ -106,7 +110,8 @@ Newton::Point Newton::damped(const Point& from, const LoadPoint& load) {
   return best;
 }
 
-void Newton::record(const std::string& kind, const Point& from, const Point& to, int step, std::vector<IterationRecord>& records) const {
+void Newton::record(const std::string& kind, const Point& from, const Point& to, int step,
+                    std::vector<IterationRecord>& records) const {
   IterationRecord r;
   r.step = step;
   r.iteration = outcome_.newton + outcome_.chord;
@@ -122,8 +127,8 @@ void Newton::record(const std::string& kind, const Point& from, const Point& to,
   records.push_back(r);
 }
 
-NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, int step, std::vector<IterationRecord>& records,
-                          Eigen::MatrixXd pressure) {
+NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, int step,
+                          std::vector<IterationRecord>& records, Eigen::MatrixXd pressure) {
   outcome_ = {};
   secant_ = Secant(equations_.displacement_unknowns());
   Point now;
@@ -150,15 +155,18 @@ NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, i
     now.evaluation.sums.smallest_jacobian_cell = failure.cell;
     return end(fmt::format("cell {} has J = {:.3g} where the step begins", failure.cell, failure.jacobian));
   }
-  bool fresh = false;                                 // the factor is of this point
-  bool keep = settings_.chord && factor_.ready();     // the factor may serve once more
+  bool fresh = false;                              // the factor is of this point
+  bool keep = settings_.chord && factor_.ready();  // the factor may serve once more
   int stalled = 0;
   if (factor_.ready()) correct(now);
   while (true) {
-    if (arrived(now) && factor_.ready() && now.length <= settings_.relative_step * step_scale(now.configuration)) return end("");
+    if (arrived(now) && factor_.ready() &&
+        now.length <= settings_.relative_step * step_scale(now.configuration))
+      return end("");
     if (!keep && !fresh) {
       if (outcome_.newton >= settings_.max_iterations) {
-        return end(fmt::format("{} Newton iterations left a relative residual of {:.3g}", outcome_.newton, now.evaluation.relative));
+        return end(fmt::format("{} Newton iterations left a relative residual of {:.3g}", outcome_.newton,
+                               now.evaluation.relative));
       }
       if (std::string trouble = new_factor(now, load); !trouble.empty()) return end(trouble);
       fresh = true;
@@ -170,11 +178,13 @@ NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, i
       record("newton", now, next, step, records);
       if (!next.evaluation.valid()) {
         const AssemblyFailure failure = *next.evaluation.sums.failure;
-        return end(fmt::format("cell {} inverts (J = {:.3g}) however short the Newton step", failure.cell, failure.jacobian));
+        return end(fmt::format("cell {} inverts (J = {:.3g}) however short the Newton step", failure.cell,
+                               failure.jacobian));
       }
     } else {
       ++outcome_.chord;
-      const Eigen::VectorXd direction = equations_.augmented() ? now.correction : secant_.step(now.correction);
+      const Eigen::VectorXd direction =
+          equations_.augmented() ? now.correction : secant_.step(now.correction);
       next = move(now, direction, 1.0, load);
       const bool nearer = next.evaluation.valid() && (next.length < now.length || arrived(next));
       if (!nearer) next.part = 0.0;
@@ -192,7 +202,8 @@ NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, i
     keep = next.part == 1.0 && (chord_pays(next, contraction) || (arrived(next) && contraction < 1.0));
     fresh = false;
     now = std::move(next);
-    if (stalled >= 5) return end(fmt::format("stalled at a relative residual of {:.3g}", now.evaluation.relative));
+    if (stalled >= 5)
+      return end(fmt::format("stalled at a relative residual of {:.3g}", now.evaluation.relative));
   }
 }
 

@@ -1,29 +1,31 @@
 #pragma once
 /// Newton's method at one load point, with chord iterations (an old factor) where they are cheaper.
 ///
-/// Measure of progress. With K a factor (of this or an earlier point) and d = -K^-1 R(u) the correction it asks for, the
-/// natural monotonicity test compares d before and after a step under one and the same factor (Deuflhard 2011,
-/// doi:10.1007/978-3-642-23899-4, section 3.3): Θ = |d(u + λ d)|/|d(u)|. Residuals are no measure on the way: a nearly
-/// incompressible body multiplies the least error of volume by its bulk modulus.
+/// Measure of progress. With K a factor (of this or an earlier point) and d = -K^-1 R(u) the correction it
+/// asks for, the natural monotonicity test compares d before and after a step under one and the same factor
+/// (Deuflhard 2011, doi:10.1007/978-3-642-23899-4, section 3.3): Θ = |d(u + λ d)|/|d(u)|. Residuals are no
+/// measure on the way: a nearly incompressible body multiplies the least error of volume by its bulk modulus.
 ///
-/// Kind of iteration. A chord iteration costs a residual and a back-substitution, a Newton iteration r times that
-/// (TangentFactor::cost_ratio). At the contraction Θ of the present factor, n = log(tolerance/|R|)/log Θ iterations are
-/// left; a new factor about halves that number. The factor is kept while Θ < 1/2 and n <= 2 r.
+/// Kind of iteration. A chord iteration costs a residual and a back-substitution, a Newton iteration r times
+/// that (TangentFactor::cost_ratio). At the contraction Θ of the present factor, n = log(tolerance/|R|)/log Θ
+/// iterations are left; a new factor about halves that number. The factor is kept while Θ < 0.7 and n <= 2 r.
 ///
-/// Damping. A step with a new factor is taken whole where Θ <= 3/4; else λ is the damping that the last trial proposes,
-/// λ' = λ^2 |d| / (2 |d(u + λ d) - (1 - λ) d|) within [λ/10, λ/2], until Θ <= 1 - λ/4.
+/// Damping. A step with a new factor is taken whole where Θ <= 3/4; else λ is the damping that the last trial
+/// proposes, λ' = λ^2 |d| / (2 |d(u + λ d) - (1 - λ) d|) within [λ/10, λ/2], until Θ <= 1 - λ/4.
 ///
-/// Pressure of condensed formulations. Newton's method for displacements and pressures together keeps the pressure p of
-/// a cell as an unknown beside u. With R(u, p) the residual at that pressure, and at the place of the factor B = Dθ and
-/// the matrix K + B' U'' B of the condensed system,
+/// Pressure of condensed formulations. Newton's method for displacements and pressures together keeps the
+/// pressure p of a cell as an unknown beside u. With R(u, p) the residual at that pressure, and at the place
+/// of the factor B = Dθ and the matrix K + B' U'' B of the condensed system,
 ///   Δp = U'(θ(u)) + m - p,   d = -(K + B' U'' B)^-1 (R + B' Δp),   p <- p + λ (Δp + U'' B d).
-/// The multiplier m is 0 where the bulk modulus is finite, and p itself where it is infinite (augmented Lagrange: the
-/// change of volume θ - 1 goes to zero with p, at no factorisation of its own). R at U'(θ(u)) instead, as a condensed
-/// body is often solved, has the same solution but multiplies every curvature of θ by the bulk modulus on the way there.
-/// (Simo, Taylor & Pister 1985, doi:10.1016/0045-7825(85)90033-7; Wriggers 2008, doi:10.1007/978-3-540-71001-1, ch. 10)
+/// The multiplier m is 0 where the bulk modulus is finite, and p itself where it is infinite (augmented
+/// Lagrange: the change of volume θ - 1 goes to zero with p, at no factorisation of its own). R at U'(θ(u))
+/// instead, as a condensed body is often solved, has the same solution but multiplies every curvature of θ by
+/// the bulk modulus on the way there. (Simo, Taylor & Pister 1985, doi:10.1016/0045-7825(85)90033-7; Wriggers
+/// 2008, doi:10.1007/978-3-540-71001-1, ch. 10)
 ///
-/// Done when the relative residual (equations.hpp) is below its tolerance, |θ - 1| below its own where a bulk modulus is
-/// infinite, and the correction that the residual still asks for below relative_step max(|u|, 1e-3 h √n).
+/// Done when the relative residual (equations.hpp) is below its tolerance or rounding, |θ - 1| below its own
+/// where a bulk modulus is infinite, and the correction that the residual still asks for below relative_step
+/// max(|u|, 1e-3 h √n).
 
 #include <string>
 #include <vector>
@@ -40,16 +42,16 @@ struct NewtonSettings {
   bool chord = true;
   double volume_tolerance = 1e-8;
   int max_augmentations = 30;
-  std::string prefix;          ///< of the kinds in the records
+  std::string prefix;  ///< of the kinds in the records
 };
 
 NewtonSettings newton_settings(const SolveOptions& options);
 
 struct NewtonOutcome {
   bool converged = false;
-  std::string reason;            ///< why not
+  std::string reason;  ///< why not
   int newton = 0, chord = 0, augmentations = 0;
-  Evaluation last;               ///< at the configuration that is left behind
+  Evaluation last;  ///< at the configuration that is left behind
 };
 
 class Newton {
@@ -59,14 +61,14 @@ class Newton {
 
   /// Moves the free unknowns (and multipliers) of `configuration`, whose held components are imposed already.
   /// `pressure`: of condensed formulations, as predicted; empty: U'(θ) and the configuration's multiplier.
-  NewtonOutcome run(Configuration& configuration, const LoadPoint& load, int step, std::vector<IterationRecord>& records,
-                    Eigen::MatrixXd pressure = {});
+  NewtonOutcome run(Configuration& configuration, const LoadPoint& load, int step,
+                    std::vector<IterationRecord>& records, Eigen::MatrixXd pressure = {});
 
  private:
   /// A point, and what the factor at hand asks for there.
   struct Point {
-    Configuration configuration;      ///< its multiplier makes the pressure p
-    Eigen::MatrixXd pressure, excess; ///< p and Δp of condensed formulations
+    Configuration configuration;       ///< its multiplier makes the pressure p
+    Eigen::MatrixXd pressure, excess;  ///< p and Δp of condensed formulations
     Evaluation evaluation;
     Eigen::VectorXd correction;  ///< d
     double length = 0.0;         ///< |d| over displacements [m]
@@ -86,7 +88,8 @@ class Newton {
   std::string new_factor(Point& p, const LoadPoint& load);
   Point move(const Point& from, const Eigen::VectorXd& step, double part, const LoadPoint& load);
   Point damped(const Point& from, const LoadPoint& load);
-  void record(const std::string& kind, const Point& from, const Point& to, int step, std::vector<IterationRecord>& records) const;
+  void record(const std::string& kind, const Point& from, const Point& to, int step,
+              std::vector<IterationRecord>& records) const;
 };
 
 }  // namespace brachium::fem

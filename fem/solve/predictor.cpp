@@ -2,8 +2,8 @@
 
 namespace brachium::fem {
 
-bool predict(Equations& equations, TangentFactor& factor, const LoadPoint& from, const LoadPoint& to, Configuration& configuration,
-             Eigen::MatrixXd& pressure) {
+bool predict(Equations& equations, TangentFactor& factor, const LoadPoint& from, const LoadPoint& to,
+             Configuration& configuration, Eigen::MatrixXd& pressure) {
   constexpr double part = 1e-4;
   if (!factor.ready()) return false;
   Configuration here = configuration;
@@ -36,7 +36,8 @@ bool predict(Equations& equations, TangentFactor& factor, const LoadPoint& from,
   return true;
 }
 
-Eigen::VectorXd extrapolate(const Eigen::VectorXd& before, const Eigen::VectorXd& now, const Eigen::VectorXd& first, double ratio) {
+Eigen::VectorXd extrapolate(const Eigen::VectorXd& before, const Eigen::VectorXd& now,
+                            const Eigen::VectorXd& first, double ratio) {
   // c h^2 = (u_(n-1) - u_n + Δu τ/h) (h/τ)^2
   return first + ratio * ratio * (before - now) + ratio * (first - now);
 }

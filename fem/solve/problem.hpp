@@ -1,5 +1,6 @@
 #pragma once
-/// A quasi-static boundary-value problem as plain values: what a user can ask of the solver. Const once built.
+/// A quasi-static boundary-value problem as plain values: what a user can ask of the solver. Const once
+/// built.
 
 #include <Eigen/Core>
 #include <array>
@@ -18,8 +19,8 @@
 namespace brachium::fem {
 
 // ---------------------------------------------------------------- boundary conditions
-// Each has a name, a surface of the mesh (or a node set), and an amplitude that the programme's phases move; what is
-// given here is its value at amplitude 1. Conditions that only fix things have no amplitude.
+// Each has a name, a surface of the mesh (or a node set), and an amplitude that the programme's phases move;
+// what is given here is its value at amplitude 1. Conditions that only fix things have no amplitude.
 
 /// u = 0 in the chosen components.
 struct Fixed {
@@ -33,7 +34,8 @@ struct PrescribedDisplacement {
 
 /// u = amplitude * value, point by point: measured surfaces, and fields known in closed form.
 struct PrescribedField {
-  Eigen::Matrix3Xd displacement_m;  ///< 3 x n, columns in the order of Mesh::surface_points; NaN leaves a component free
+  Eigen::Matrix3Xd
+      displacement_m;  ///< 3 x n, columns in the order of Mesh::surface_points; NaN leaves a component free
 };
 
 /// x = centre + R (X - centre) + amplitude * translation, R = rotation about `axis` by amplitude * angle.
@@ -53,16 +55,17 @@ struct DeadTraction {
   bool is_total_force = false;  ///< then traction_pa is a force [N]
 };
 
-/// Pressure on the deformed surface, against its outward normal. A surface with a free edge has no potential: the
-/// tangent is then unsymmetric.
+/// Pressure on the deformed surface, against its outward normal. A surface with a free edge has no potential:
+/// the tangent is then unsymmetric.
 struct FollowerPressure {
   double pressure_pa = 0.0;
 };
 
-/// Force per reference volume, fixed in direction (weight; sources of manufactured solutions). Acts on the whole body:
-/// its `surface` is empty.
+/// Force per reference volume, fixed in direction (weight; sources of manufactured solutions). Acts on the
+/// whole body: its `surface` is empty.
 struct BodyForce {
-  Eigen::Matrix3Xd force_n_m3;  ///< one column: uniform; or one per quadrature point, columns as in TissueField
+  Eigen::Matrix3Xd
+      force_n_m3;  ///< one column: uniform; or one per quadrature point, columns as in TissueField
 };
 
 struct BoundaryCondition {
@@ -78,11 +81,11 @@ struct BoundaryCondition {
 /// One phase: amplitudes and activations move linearly from where they stand to the values given here.
 struct Phase {
   std::string name;
-  std::map<std::string, double> amplitude;   ///< by boundary condition, at the phase's end; others keep theirs
+  std::map<std::string, double> amplitude;  ///< by boundary condition, at the phase's end; others keep theirs
   std::map<std::string, double> activation;  ///< by region, in [0, 1], at the phase's end; others keep theirs
-  std::vector<std::string> release;          ///< constraints that fade: their reactions go to zero over the phase
-  int steps = 1;                             ///< load steps to begin with; more where needed
-  double duration_s = 1.0;                   ///< time scale, used by rate-dependent laws only
+  std::vector<std::string> release;  ///< constraints that fade: their reactions go to zero over the phase
+  int steps = 1;                     ///< load steps to begin with; more where needed
+  double duration_s = 1.0;           ///< time scale, used by rate-dependent laws only
 };
 
 // ---------------------------------------------------------------- the whole
@@ -96,9 +99,9 @@ struct Problem {
   std::vector<Phase> programme;
 };
 
-/// Everything that is wrong with a problem, before anything is solved; empty when sound. Codes: missing-surface,
-/// unknown-region, contradictory-conditions, activation-range, empty-phase, missing-fibres, unsupported-motion (named
-/// rigid modes), cell-type-mismatch, disconnected-mesh, ...
+/// Everything that is wrong with a problem, before anything is solved; empty when sound. Codes:
+/// missing-surface, unknown-region, contradictory-conditions, activation-range, empty-phase, missing-fibres,
+/// unsupported-motion (named rigid modes), cell-type-mismatch, disconnected-mesh, ...
 std::vector<data::Diagnostic> check(const Problem& problem);
 
 }  // namespace brachium::fem

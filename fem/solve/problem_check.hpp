@@ -14,12 +14,16 @@ struct Findings {
   bool conditions_sound = true;  ///< every condition is understood, and so is every release
 
   void error(std::string code, std::string message, std::string help) {
-    list.push_back({data::Severity::error, std::move(code), std::move(message), std::nullopt, std::move(help)});
+    list.push_back(
+        {data::Severity::error, std::move(code), std::move(message), std::nullopt, std::move(help)});
   }
   void warning(std::string code, std::string message, std::string help) {
-    list.push_back({data::Severity::warning, std::move(code), std::move(message), std::nullopt, std::move(help)});
+    list.push_back(
+        {data::Severity::warning, std::move(code), std::move(message), std::nullopt, std::move(help)});
   }
-  void add(const data::InputError& e) { list.insert(list.end(), e.diagnostics().begin(), e.diagnostics().end()); }
+  void add(const data::InputError& e) {
+    list.insert(list.end(), e.diagnostics().begin(), e.diagnostics().end());
+  }
   bool any_error() const {
     for (const data::Diagnostic& d : list) {
       if (d.severity == data::Severity::error) return true;

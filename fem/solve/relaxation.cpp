@@ -11,7 +11,7 @@ namespace brachium::fem {
 namespace {
 
 constexpr double first_dt = 0.1, smallest_dt = 1e-5, largest_dt = 1e8;  // s of pseudo-time
-constexpr int most_finishes = 12;
+constexpr int most_finishes = 12, steps_between_finishes = 10;
 
 Configuration at_rest(Configuration c) {
   c.dofs_before.resize(0);
@@ -32,7 +32,8 @@ bool Relaxer::disturb(Configuration& configuration, const LoadPoint& load) {
   return false;
 }
 
-bool Relaxer::move_held(Configuration& configuration, const LoadPoint& from, const LoadPoint& to, double inverse_dt) {
+bool Relaxer::move_held(Configuration& configuration, const LoadPoint& from, const LoadPoint& to,
+                        double inverse_dt) {
   Configuration viscous = at_rest(configuration);
   viscous.dofs_before = viscous.dofs;
   viscous.inverse_dt = inverse_dt;
@@ -46,8 +47,8 @@ bool Relaxer::move_held(Configuration& configuration, const LoadPoint& from, con
   return true;
 }
 
-Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, const LoadPoint& to, bool disturbed, int step,
-                        std::vector<IterationRecord>& records) {
+Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, const LoadPoint& to,
+                        bool disturbed, int step, std::vector<IterationRecord>& records) {
   Relaxation result;
   if (equations_.rate_dependent()) {
     result.reason = "viscous continuation would change the rates that a rate-dependent law asks for";
@@ -67,7 +68,7 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
   flow.max_chord_iterations = 12;
   flow.prefix = "relax ";
   double dt = first_dt, growth = 2.0;
-  int finishes = 0;
+  int finishes = 0, next_finish = 0;
   std::string last_trouble;
   const auto count = [&](const NewtonOutcome& o) {
     result.newton += o.newton;
@@ -85,7 +86,8 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
     count(outcome);
     const auto modes = factor_.negative_modes();
     if (!outcome.converged || (modes && modes->count > 0)) {
-      last_trouble = outcome.converged ? fmt::format("{} negative modes of the viscous tangent", modes->count) : outcome.reason;
+      last_trouble = outcome.converged ? fmt::format("{} negative modes of the viscous tangent", modes->count)
+                                       : outcome.reason;
       dt *= 0.3;
       growth = 1.3;
       if (dt < smallest_dt) {
@@ -100,7 +102,10 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
     result.dissipated_energy += -still.residual.dot(equations_.unknowns().restrict(next.dofs - now.dofs));
     now = std::move(next);
     const bool slow = dt >= 1e3 && still.relative <= 1e-2;
-    if (slow || still.relative <= 1e-4) {
+    // A passage near a vanished equilibrium looks like rest: what the flow is solved to follows the residual
+    // it flows by.
+    flow.relative_residual = std::clamp(1e-2 * still.relative, options_.relative_residual, 1e-5);
+    if ((slow || still.relative <= 1e-4) && result.steps >= next_finish) {
       // At rest, or nearly: without viscosity.
       Configuration end = now;
       std::vector<IterationRecord> tail;
@@ -126,7 +131,9 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
       } else {
         last_trouble = finish.reason;
       }
-      if (++finishes >= most_finishes) {
+      ++finishes;
+      next_finish = result.steps + steps_between_finishes * finishes;
+      if (finishes >= most_finishes) {
         result.reason = fmt::format("no stable state was found in {} attempts: {}", finishes, last_trouble);
         return result;
       }
@@ -134,8 +141,8 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
     dt = std::min(largest_dt, dt * (outcome.newton <= 3 ? growth : 1.0));
     growth = std::min(4.0, growth * 1.2);
   }
-  result.reason = fmt::format("the body still flowed after {} viscous steps{}{}", result.steps, last_trouble.empty() ? "" : "; last trouble: ",
-                              last_trouble);
+  result.reason = fmt::format("the body still flowed after {} viscous steps{}{}", result.steps,
+                              last_trouble.empty() ? "" : "; last trouble: ", last_trouble);
   return result;
 }
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <Eigen/SVD>
-#include <Eigen/Geometry>
 #include <cmath>
 #include <numeric>
 
@@ -26,7 +26,9 @@ int root(std::vector<int>& parent, int n) {
   return n;
 }
 
-double clean(double v) { return std::abs(v) < 1e-9 ? 0.0 : v; }
+double clean(double v) {
+  return std::abs(v) < 1e-9 ? 0.0 : v;
+}
 
 std::string direction_name(Eigen::Vector3d d) {
   d.normalize();
@@ -74,7 +76,8 @@ std::vector<int> connected_parts(const data::Mesh& mesh) {
   return part;
 }
 
-std::vector<std::string> free_motions(const data::Mesh& mesh, const std::vector<int>& nodes, const std::vector<Hold>& holds) {
+std::vector<std::string> free_motions(const data::Mesh& mesh, const std::vector<int>& nodes,
+                                      const std::vector<Hold>& holds) {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const int n : nodes) centre += mesh.points.col(n);
   centre /= static_cast<double>(nodes.size());
@@ -96,9 +99,11 @@ std::vector<std::string> free_motions(const data::Mesh& mesh, const std::vector<
   const Eigen::MatrixXd null = modes.eigenvectors().leftCols(free);
 
   // Translations: (t, 0) in the null space.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(Eigen::Matrix3d(gram.topLeftCorner<3, 3>()));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
+      Eigen::Matrix3d(gram.topLeftCorner<3, 3>()));
   int translations = 0;
-  while (translations < 3 && directions.eigenvalues()[translations] <= null_tolerance * largest) ++translations;
+  while (translations < 3 && directions.eigenvalues()[translations] <= null_tolerance * largest)
+    ++translations;
   for (const Eigen::Vector3d& d : readable_basis(directions.eigenvectors().leftCols(translations))) {
     names.push_back("translation along " + direction_name(d));
   }
@@ -111,8 +116,8 @@ std::vector<std::string> free_motions(const data::Mesh& mesh, const std::vector<
     const Vector6 motion = null * turns.completeOrthogonalDecomposition().solve(Eigen::MatrixXd(axis));
     const Eigen::Vector3d omega = motion.tail<3>() / size, t = motion.head<3>();
     const Eigen::Vector3d point = centre + omega.cross(t) / omega.squaredNorm();
-    names.push_back(fmt::format("rotation about the axis along {} through ({:.4g}, {:.4g}, {:.4g}) m", direction_name(axis),
-                                clean(point[0]), clean(point[1]), clean(point[2])));
+    names.push_back(fmt::format("rotation about the axis along {} through ({:.4g}, {:.4g}, {:.4g}) m",
+                                direction_name(axis), clean(point[0]), clean(point[1]), clean(point[2])));
   }
   return names;
 }

@@ -1,9 +1,10 @@
 #pragma once
-/// Broyden's update of an old factor, kept as the steps alone (Kelley 1995, doi:10.1137/1.9781611970944, section 7.3):
-/// with K0^-1 the old factor and s_k the steps so far,
-///   z = -K0^-1 R;  z += s_(j+1) (s_j . z)/|s_j|^2  for j = 0 .. n-2;  s_n = z / (1 - s_(n-1) . z / |s_(n-1)|^2).
-/// Every step must have been taken whole, on one and the same residual function. Products are over the leading unknowns
-/// (displacements), since pressures have another unit.
+/// Broyden's update of an old factor, kept as the steps alone (Kelley 1995, doi:10.1137/1.9781611970944,
+/// section 7.3): with K0^-1 the old factor and s_k the steps so far,
+///   z = -K0^-1 R;  z += s_(j+1) (s_j . z)/|s_j|^2  for j = 0 .. n-2;  s_n = z / (1 - s_(n-1) . z /
+///   |s_(n-1)|^2).
+/// Every step must have been taken whole, on one and the same residual function. Products are over the
+/// leading unknowns (displacements), since pressures have another unit.
 
 #include <Eigen/Core>
 #include <vector>

@@ -9,10 +9,12 @@
 namespace brachium::fem {
 namespace {
 
-/// Largest move of a node between two configurations, over the cells' size; infinite where anything else differs.
+/// Largest move of a node between two configurations, over the cells' size; infinite where anything else
+/// differs.
 double distance(const Equations& equations, const Configuration& a, const Configuration& b) {
-  if (a.dofs.size() != b.dofs.size() || a.viscosity_pa_s != b.viscosity_pa_s || a.inverse_dt != b.inverse_dt ||
-      a.activation != b.activation || a.dofs_before.size() != b.dofs_before.size() || a.dofs_before != b.dofs_before) {
+  if (a.dofs.size() != b.dofs.size() || a.viscosity_pa_s != b.viscosity_pa_s ||
+      a.inverse_dt != b.inverse_dt || a.activation != b.activation ||
+      a.dofs_before.size() != b.dofs_before.size() || a.dofs_before != b.dofs_before) {
     return std::numeric_limits<double>::infinity();
   }
   const Eigen::Index displacements = 3 * static_cast<Eigen::Index>(equations.discretisation().node_count());
@@ -25,12 +27,13 @@ Stability judged(const TangentFactor::NegativeModes& modes, const std::string& w
 
 }  // namespace
 
-Stability check_stability(Equations& equations, TangentFactor& factor, const SolveOptions& options, Configuration& configuration,
-                          const LoadPoint& load) {
+Stability check_stability(Equations& equations, TangentFactor& factor, const SolveOptions& options,
+                          Configuration& configuration, const LoadPoint& load) {
   if (equations.unsymmetric()) {
     // A factor of its own: the symmetric part.
     TangentValues tangent;
-    if (!equations.linearise(configuration, load, tangent).valid()) return {"not checked", 0, "the tangent is not finite"};
+    if (!equations.linearise(configuration, load, tangent).valid())
+      return {"not checked", 0, "the tangent is not finite"};
     SolverOptions solver_options;
     solver_options.fall_back = false;
     const auto solver = make_symmetric_solver("ldl", solver_options);
@@ -41,15 +44,20 @@ Stability check_stability(Equations& equations, TangentFactor& factor, const Sol
     if (status.kind == FactorKind::positive_definite && !equations.saddle_point()) {
       return {"stable", 0, "symmetric part of an unsymmetric tangent is positive definite (LDL')"};
     }
-    return {"not checked", 0,
-            fmt::format("the tangent is unsymmetric and its symmetric part has {} negative modes, which does not decide",
-                        inertia ? std::to_string(inertia->negative) : std::string("uncounted"))};
+    return {
+        "not checked", 0,
+        fmt::format(
+            "the tangent is unsymmetric and its symmetric part has {} negative modes, which does not decide",
+            inertia ? std::to_string(inertia->negative) : std::string("uncounted"))};
   }
-  const double away = factor.ready() && factor.amplitude() == load.amplitude ? distance(equations, factor.configuration(), configuration)
-                                                                             : std::numeric_limits<double>::infinity();
+  const double away = factor.ready() && factor.amplitude() == load.amplitude
+                          ? distance(equations, factor.configuration(), configuration)
+                          : std::numeric_limits<double>::infinity();
   if (away <= 1e-3) {
     if (const auto modes = factor.negative_modes()) {
-      return judged(*modes, away == 0.0 ? "at the state" : fmt::format("tangent {:.1e} of a cell's size before the state", away));
+      return judged(*modes, away == 0.0
+                                ? "at the state"
+                                : fmt::format("tangent {:.1e} of a cell's size before the state", away));
     }
   }
   if (const std::string trouble = factor.make(equations, configuration, load); !trouble.empty()) {
@@ -67,7 +75,8 @@ std::optional<Eigen::VectorXd> negative_mode(const Equations& equations, const T
   Eigen::MatrixXd V(n, block);
   for (Eigen::Index j = 0; j < block; ++j) {
     for (Eigen::Index i = 0; i < n; ++i) {
-      V(i, j) = std::sin(0.37 + 12.9898 * static_cast<double>(i) + 78.233 * static_cast<double>(j * (i % 17)));
+      V(i, j) =
+          std::sin(0.37 + 12.9898 * static_cast<double>(i) + 78.233 * static_cast<double>(j * (i % 17)));
     }
   }
   std::optional<Eigen::VectorXd> mode;

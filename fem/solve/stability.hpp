@@ -1,10 +1,11 @@
 #pragma once
-/// Whether an equilibrium is stable: the number of negative eigenvalues of its tangent (Sylvester's law of inertia, by the
-/// signs of the pivots), less those that the pressures of a saddle point bring.
+/// Whether an equilibrium is stable: the number of negative eigenvalues of its tangent (Sylvester's law of
+/// inertia, by the signs of the pivots), less those that the pressures of a saddle point bring.
 ///
-/// With multipliers the tangent is that of the augmented Lagrangian: for a large penalty it has as many negative modes as
-/// the exactly incompressible body (Nocedal & Wright 2006, doi:10.1007/978-0-387-40065-5, theorem 17.5). Where loads make
-/// the tangent unsymmetric, a positive definite symmetric part means stable; otherwise nothing is said.
+/// With multipliers the tangent is that of the augmented Lagrangian: for a large penalty it has as many
+/// negative modes as the exactly incompressible body (Nocedal & Wright 2006, doi:10.1007/978-0-387-40065-5,
+/// theorem 17.5). Where loads make the tangent unsymmetric, a positive definite symmetric part means stable;
+/// otherwise nothing is said.
 
 #include <optional>
 
@@ -13,13 +14,13 @@
 
 namespace brachium::fem {
 
-/// The factor at hand serves where it was made within 1e-3 of a cell's size of the state, under the same loads; else the
-/// tangent is factorised again at the state. The method says which.
-Stability check_stability(Equations& equations, TangentFactor& factor, const SolveOptions& options, Configuration& configuration,
-                          const LoadPoint& load);
+/// The factor at hand serves where it was made within 1e-3 of a cell's size of the state, under the same
+/// loads; else the tangent is factorised again at the state. The method says which.
+Stability check_stability(Equations& equations, TangentFactor& factor, const SolveOptions& options,
+                          Configuration& configuration, const LoadPoint& load);
 
-/// A direction (by unknown, largest entry 1) along which the tangent last factorised is negative, by block inverse
-/// iteration; none found: empty.
+/// A direction (by unknown, largest entry 1) along which the tangent last factorised is negative, by block
+/// inverse iteration; none found: empty.
 std::optional<Eigen::VectorXd> negative_mode(const Equations& equations, const TangentFactor& factor);
 
 }  // namespace brachium::fem

@@ -19,7 +19,8 @@ constexpr double time_tolerance = 1e-12;
 
 }  // namespace
 
-Stepper::Stepper(const Problem& problem, const SolveOptions& options, const Observer& observer, const Progress& progress)
+Stepper::Stepper(const Problem& problem, const SolveOptions& options, const Observer& observer,
+                 const Progress& progress)
     : problem_(problem),
       options_(options),
       observer_(observer),
@@ -29,10 +30,11 @@ Stepper::Stepper(const Problem& problem, const SolveOptions& options, const Obse
       factor_(options) {
   summary_.penalty_pa = equations_.penalty_pa();
   if (equations_.augmented()) {
-    summary_.diagnostics.push_back({data::Severity::note, "penalty-chosen",
-                                    fmt::format("exact incompressibility by augmented Lagrange around a bulk modulus of {:.4g} Pa{}",
-                                                equations_.penalty_pa(), options.penalty_pa > 0.0 ? "" : ", chosen from the materials"),
-                                    std::nullopt, ""});
+    summary_.diagnostics.push_back(
+        {data::Severity::note, "penalty-chosen",
+         fmt::format("exact incompressibility by augmented Lagrange around a bulk modulus of {:.4g} Pa{}",
+                     equations_.penalty_pa(), options.penalty_pa > 0.0 ? "" : ", chosen from the materials"),
+         std::nullopt, ""});
   }
 }
 
@@ -45,11 +47,13 @@ void Stepper::restore(const SolveState& restart) {
   if (restart.configuration.dofs.size() != equations_.discretisation().dof_count() || restart.phase < 0 ||
       restart.phase >= static_cast<int>(problem_.programme.size()) ||
       restart.configuration.activation.size() != static_cast<Eigen::Index>(problem_.mesh->regions.size())) {
-    throw data::InputError("restart-mismatch",
-                           fmt::format("the saved state has {} degrees of freedom and stands in phase {}, the problem has {} and {} phases",
-                                       restart.configuration.dofs.size(), restart.phase + 1, equations_.discretisation().dof_count(),
-                                       problem_.programme.size()),
-                           "a solve goes on with the mesh, the formulation and the programme it was begun with");
+    throw data::InputError(
+        "restart-mismatch",
+        fmt::format("the saved state has {} degrees of freedom and stands in phase {}, the problem has {} "
+                    "and {} phases",
+                    restart.configuration.dofs.size(), restart.phase + 1,
+                    equations_.discretisation().dof_count(), problem_.programme.size()),
+        "a solve goes on with the mesh, the formulation and the programme it was begun with");
   }
   state_ = restart;
   equations_.constrain(state_.released);
@@ -69,7 +73,9 @@ std::string Stepper::begin_phase() {
     const LoadPoint now = programme_.at(state_, 0.0);
     Configuration here = state_.configuration;
     const Evaluation e = equations_.evaluate(here, now);
-    if (!e.valid()) return fmt::format("phase `{}`: reactions could not be evaluated where constraints are released", phase.name);
+    if (!e.valid())
+      return fmt::format("phase `{}`: reactions could not be evaluated where constraints are released",
+                         phase.name);
     state_.released.insert(state_.released.end(), phase.release.begin(), phase.release.end());
     if (equations_.constrain(state_.released)) {
       factor_.analyse(equations_);
@@ -93,23 +99,26 @@ void Stepper::count(const NewtonOutcome& outcome, StepRecord& record) {
 Configuration Stepper::first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record,
                                    Eigen::MatrixXd& pressure) {
   Configuration guess = state_.configuration;
-  if (options_.predictor) {
-    if (!factor_.ready()) factor_.make(equations_, state_.configuration, from);
-    if (predict(equations_, factor_, from, to, guess, pressure)) {
-      IterationRecord r;
-      r.step = record.step;
-      r.kind = "predictor";
-      r.step_norm = (guess.dofs - state_.configuration.dofs).head(3 * equations_.discretisation().node_count()).norm();
-      if (state_.dofs_before.size() > 0 && state_.step_before > 0.0) {
-        guess.dofs = extrapolate(state_.dofs_before, state_.configuration.dofs, guess.dofs, h / state_.step_before);
-        equations_.constraints().impose(to.amplitude, guess.dofs);
-        r.note = "second order";
-      }
-      record.iterations.push_back(r);
-      return guess;
-    }
+  if (!options_.predictor) factor_.forget();
+  const bool fresh = !factor_.ready();
+  if (fresh) factor_.make(equations_, state_.configuration, from);
+  if (fresh && !options_.predictor) ++record.newton_iterations;
+  if (!predict(equations_, factor_, from, to, guess, pressure)) {
+    equations_.constraints().impose(to.amplitude, guess.dofs);
+    return guess;
   }
-  equations_.constraints().impose(to.amplitude, guess.dofs);
+  IterationRecord r;
+  r.step = record.step;
+  r.kind = "predictor";
+  r.step_norm = equations_.displacements(guess.dofs - state_.configuration.dofs).norm();
+  if (fresh) r.note = "new factor";
+  if (options_.predictor && state_.dofs_before.size() > 0 && state_.step_before > 0.0) {
+    guess.dofs =
+        extrapolate(state_.dofs_before, state_.configuration.dofs, guess.dofs, h / state_.step_before);
+    equations_.constraints().impose(to.amplitude, guess.dofs);
+    r.note = "second order";
+  }
+  record.iterations.push_back(r);
   return guess;
 }
 
@@ -121,10 +130,12 @@ Stepper::Attempt Stepper::try_newton(double time, StepRecord& record) {
   attempt.configuration = first_guess(from, to, h, record, pressure);
   if (equations_.rate_dependent()) {
     attempt.configuration.dofs_before = state_.configuration.dofs;
-    attempt.configuration.inverse_dt = 1.0 / (h * problem_.programme[static_cast<std::size_t>(state_.phase)].duration_s);
+    attempt.configuration.inverse_dt =
+        1.0 / (h * problem_.programme[static_cast<std::size_t>(state_.phase)].duration_s);
   }
   NewtonOutcome outcome =
-      Newton(equations_, factor_, newton_settings(options_)).run(attempt.configuration, to, record.step, record.iterations, std::move(pressure));
+      Newton(equations_, factor_, newton_settings(options_))
+          .run(attempt.configuration, to, record.step, record.iterations, std::move(pressure));
   count(outcome, record);
   attempt.accepted = outcome.converged;
   attempt.reason = outcome.reason;
@@ -136,7 +147,8 @@ Stepper::Attempt Stepper::try_relaxation(double time, StepRecord& record) {
   Attempt attempt;
   const LoadPoint from = programme_.at(state_, state_.phase_time), to = programme_.at(state_, time);
   attempt.configuration = state_.configuration;
-  Relaxation r = Relaxer(equations_, factor_, options_).run(attempt.configuration, from, to, false, record.step, record.iterations);
+  Relaxation r = Relaxer(equations_, factor_, options_)
+                     .run(attempt.configuration, from, to, false, record.step, record.iterations);
   record.newton_iterations += r.newton;
   record.chord_iterations += r.chord;
   record.augmentations += r.augmentations;
@@ -166,25 +178,29 @@ std::string Stepper::judge_stability(Attempt& attempt, double time, StepRecord& 
   const LoadPoint load = programme_.at(state_, time);
   record.stability = check_stability(equations_, factor_, options_, attempt.configuration, load);
   if (record.stability.verdict != "unstable") return {};
-  const std::string finding = fmt::format("{}: the equilibrium is unstable, {} negative modes ({})", place(time),
-                                          record.stability.negative_modes, record.stability.method);
+  const std::string finding =
+      fmt::format("{}: the equilibrium is unstable, {} negative modes ({})", place(time),
+                  record.stability.negative_modes, record.stability.method);
   const auto warn = [&](const std::string& text) {
-    summary_.diagnostics.push_back({data::Severity::warning, "unstable-state", text, std::nullopt,
-                                    "contraction on the descending limb of the force-length curve is not unique"});
+    summary_.diagnostics.push_back(
+        {data::Severity::warning, "unstable-state", text, std::nullopt,
+         "contraction on the descending limb of the force-length curve is not unique"});
   };
   if (options_.on_instability == "fail") return finding;
   if (options_.on_instability == "report") {
     warn(finding);
     return {};
   }
-  Relaxation r = Relaxer(equations_, factor_, options_).run(attempt.configuration, load, load, true, record.step, record.iterations);
+  Relaxation r = Relaxer(equations_, factor_, options_)
+                     .run(attempt.configuration, load, load, true, record.step, record.iterations);
   record.newton_iterations += r.newton;
   record.chord_iterations += r.chord;
   record.augmentations += r.augmentations;
   record.relaxation_steps += r.steps;
   record.dissipated_energy += r.dissipated_energy;
   if (!r.reached) return finding + "; " + r.reason;
-  warn(fmt::format("{}; relaxed to a stable state in {} viscous steps, {:.3g} J dissipated", finding, r.steps, r.dissipated_energy));
+  warn(fmt::format("{}; relaxed to a stable state in {} viscous steps, {:.3g} J dissipated", finding, r.steps,
+                   r.dissipated_energy));
   record.stability = r.stability;
   attempt.last = std::move(r.last);
   return {};
@@ -228,7 +244,8 @@ void Stepper::accept(Attempt& attempt, double time, StepRecord& record) {
   summary_.last = state_;
 }
 
-/// Empty when `attempt` may be judged: a halved step, or a relaxed one, or the reason why neither is possible.
+/// Empty when `attempt` may be judged: a halved step, or a relaxed one, or the reason why neither is
+/// possible.
 std::string Stepper::after_failure(Attempt& attempt, double h, double time, StepRecord& record, bool& again) {
   IterationRecord cut;
   cut.step = record.step;
@@ -247,16 +264,17 @@ std::string Stepper::after_failure(Attempt& attempt, double h, double time, Step
     again = true;
     return {};
   }
-  const std::string trouble =
-      fmt::format("{}: {} (relative residual {:.3g}, smallest J {:.3g} in cell {})", place(time), attempt.reason, attempt.last.relative,
-                  attempt.last.sums.smallest_jacobian, attempt.last.sums.smallest_jacobian_cell);
+  const std::string trouble = fmt::format(
+      "{}: {} (relative residual {:.3g}, smallest J {:.3g} in cell {})", place(time), attempt.reason,
+      attempt.last.relative, attempt.last.sums.smallest_jacobian, attempt.last.sums.smallest_jacobian_cell);
   if (!relax) return fmt::format("{}; the step was cut {} times", trouble, record.cut_backs);
   attempt = try_relaxation(time, record);
   if (!attempt.accepted) return fmt::format("{}; viscous continuation: {}", trouble, attempt.reason);
-  summary_.diagnostics.push_back({data::Severity::warning, "relaxed-state",
-                                  fmt::format("{}; {} viscous steps led to a stable state, {:.3g} J dissipated", trouble,
-                                              record.relaxation_steps, record.dissipated_energy),
-                                  std::nullopt, "the path of equilibria turns back or ends here: the body snaps"});
+  summary_.diagnostics.push_back(
+      {data::Severity::warning, "relaxed-state",
+       fmt::format("{}; {} viscous steps led to a stable state, {:.3g} J dissipated", trouble,
+                   record.relaxation_steps, record.dissipated_energy),
+       std::nullopt, "the path of equilibria turns back or ends here: the body snaps"});
   return {};
 }
 
@@ -325,9 +343,10 @@ void Stepper::collect(double seconds) {
   summary_.linear_solver = factor_.method;
   summary_.ordering = factor_.ordering;
   if (equations_.unsymmetric()) {
-    summary_.diagnostics.push_back({data::Severity::note, "unsymmetric-tangent",
-                                    "a pressure follows a surface with a free edge: the tangent is unsymmetric and goes to UMFPACK",
-                                    std::nullopt, ""});
+    summary_.diagnostics.push_back(
+        {data::Severity::note, "unsymmetric-tangent",
+         "a pressure follows a surface with a free edge: the tangent is unsymmetric and goes to UMFPACK",
+         std::nullopt, ""});
   }
 }
 

@@ -1,10 +1,11 @@
 #pragma once
-/// The walk along the programme: one load step after another, cut where Newton fails, grown where it is quick.
+/// The walk along the programme: one load step after another, cut where Newton fails, grown where it is
+/// quick.
 ///
-/// A step that fails is halved. After `cuts_before_relaxation` halvings in a row (or at the smallest step) the state is
-/// continued by viscous flow, where options ask for it; else the solve ends with its reason. Every number is bounded.
-/// A step that needed at most 4 factorisations doubles the next, at most 7 leaves it a quarter longer, more than 10 makes
-/// it a third shorter.
+/// A step that fails is halved. After `cuts_before_relaxation` halvings in a row (or at the smallest step)
+/// the state is continued by viscous flow, where options ask for it; else the solve ends with its reason.
+/// Every number is bounded. A step that needed at most 4 factorisations doubles the next, at most 7 leaves it
+/// a quarter longer, more than 10 makes it a third shorter.
 
 #include <string>
 
@@ -15,7 +16,8 @@ namespace brachium::fem {
 
 class Stepper {
  public:
-  Stepper(const Problem& problem, const SolveOptions& options, const Observer& observer, const Progress& progress);
+  Stepper(const Problem& problem, const SolveOptions& options, const Observer& observer,
+          const Progress& progress);
 
   Summary run(const SolveState* restart);
 
@@ -45,7 +47,8 @@ class Stepper {
   Attempt try_newton(double time, StepRecord& record);
   Attempt try_relaxation(double time, StepRecord& record);
   bool wants_stability(double time) const;
-  Configuration first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record, Eigen::MatrixXd& pressure);
+  Configuration first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record,
+                            Eigen::MatrixXd& pressure);
   std::string judge_stability(Attempt& attempt, double time, StepRecord& record);
   void accept(Attempt& attempt, double time, StepRecord& record);
   void count(const NewtonOutcome& outcome, StepRecord& record);

@@ -9,8 +9,8 @@
 namespace brachium::fem {
 namespace {
 
-// Work per second of one core, for the ratio of costs only: element loops, factorisation, back-substitution (bound by
-// memory). Constants, so that no choice depends on a clock.
+// Work per second of one core, for the ratio of costs only: element loops, factorisation, back-substitution
+// (bound by memory). Constants, so that no choice depends on a clock.
 constexpr double assembly_rate = 8e9, factor_rate = 30e9, solve_rate = 2e9;
 
 /// Entry (i, j) of the face's load tangent, in the frames of its nodes.
@@ -32,10 +32,12 @@ void for_entries(const std::vector<FaceTangent>& loads, const Unknowns& unknowns
   for (const FaceTangent& face : loads) {
     const Eigen::MatrixXd K = in_frames(face, unknowns);
     for (Eigen::Index j = 0; j < K.cols(); ++j) {
-      const int column = unknowns.unknown_of_dof[static_cast<std::size_t>(3 * face.nodes[static_cast<std::size_t>(j / 3)] + j % 3)];
+      const int column = unknowns.unknown_of_dof[static_cast<std::size_t>(
+          3 * face.nodes[static_cast<std::size_t>(j / 3)] + j % 3)];
       if (column < 0) continue;
       for (Eigen::Index i = 0; i < K.rows(); ++i) {
-        const int row = unknowns.unknown_of_dof[static_cast<std::size_t>(3 * face.nodes[static_cast<std::size_t>(i / 3)] + i % 3)];
+        const int row = unknowns.unknown_of_dof[static_cast<std::size_t>(
+            3 * face.nodes[static_cast<std::size_t>(i / 3)] + i % 3)];
         if (row >= 0) f(row, column, K(i, j));
       }
     }
@@ -53,7 +55,8 @@ Ordering ordering_named(const std::string& name) {
   if (name == "amd") return Ordering::amd;
   if (name == "automatic") return Ordering::automatic;
   const std::vector<std::string> known{"amd", "automatic", "metis"};
-  throw data::InputError("bad-option", fmt::format("there is no ordering named `{}`", name), data::suggest(name, known));
+  throw data::InputError("bad-option", fmt::format("there is no ordering named `{}`", name),
+                         data::suggest(name, known));
 }
 
 }  // namespace
@@ -63,7 +66,8 @@ std::vector<double> symmetric_part(const Equations& equations, const TangentValu
   std::vector<double> values = tangent.lower;
   for_entries(tangent.loads, equations.unknowns(), [&](int row, int column, double value) {
     // Both entries (i, j) and (j, i) come by: half of each.
-    const std::size_t at = entry_of(pattern.column_start, pattern.row, std::max(row, column), std::min(row, column));
+    const std::size_t at =
+        entry_of(pattern.column_start, pattern.row, std::max(row, column), std::min(row, column));
     values[at] -= row == column ? value : 0.5 * value;
   });
   return values;
@@ -81,7 +85,8 @@ void TangentFactor::analyse(const Equations& equations) {
   ready_ = false;
   const Stopwatch watch;
   ++analyses;
-  constraint_unknowns_ = std::count(unknowns.groups.constraint.begin(), unknowns.groups.constraint.end(), char{1});
+  constraint_unknowns_ =
+      std::count(unknowns.groups.constraint.begin(), unknowns.groups.constraint.end(), char{1});
   symmetric_.reset();
   unsymmetric_.reset();
   if (equations.unsymmetric()) {
@@ -91,7 +96,8 @@ void TangentFactor::analyse(const Equations& equations) {
     symmetric_ = make_symmetric_solver(name_, options_);
     symmetric_->analyse(unknowns.pattern, unknowns.groups);
   }
-  const double nodes = 3.0 * d.nodes_per_cell(), points = static_cast<double>(d.quadrature().size()) * d.cell_count();
+  const double nodes = 3.0 * d.nodes_per_cell(),
+               points = static_cast<double>(d.quadrature().size()) * d.cell_count();
   tangent_flops_ = 8.0 * nodes * nodes * points;
   residual_flops_ = 60.0 * nodes * points;
   analyse_seconds += watch.seconds();
@@ -122,7 +128,8 @@ std::string TangentFactor::factorise(const Equations& equations) {
   if (unsymmetric_) {
     const FullPattern& full = unsymmetric_->pattern();
     std::vector<double> values(full.row.size());
-    for (std::size_t p = 0; p < values.size(); ++p) values[p] = tangent_.lower[static_cast<std::size_t>(full.source[p])];
+    for (std::size_t p = 0; p < values.size(); ++p)
+      values[p] = tangent_.lower[static_cast<std::size_t>(full.source[p])];
     for_entries(tangent_.loads, unknowns, [&](int row, int column, double value) {
       values[entry_of(full.column_start, full.row, row, column)] -= value;
     });
@@ -137,8 +144,9 @@ std::string TangentFactor::factorise(const Equations& equations) {
   flops = statistics.flops;
   method = statistics.method;
   ordering = statistics.ordering;
-  cost_ratio_ = (tangent_flops_ / assembly_rate + flops / factor_rate) /
-                ((equations.condensed() ? 2.5 : 1.0) * residual_flops_ / assembly_rate + 4.0 * nonzeros / solve_rate);
+  cost_ratio_ =
+      (tangent_flops_ / assembly_rate + flops / factor_rate) /
+      ((equations.condensed() ? 2.5 : 1.0) * residual_flops_ / assembly_rate + 4.0 * nonzeros / solve_rate);
   factor_seconds += watch.seconds();
   return judge(equations, status);
 }
@@ -149,11 +157,12 @@ std::string TangentFactor::judge(const Equations& equations, const FactorStatus&
   if (status.first_zero_unknown < 0) return "the tangent could not be factorised";
   const int dof = equations.unknowns().dof_of_unknown[static_cast<std::size_t>(status.first_zero_unknown)];
   if (dof >= 3 * n) {
-    return fmt::format("the tangent is singular: {} pivots vanish, first the pressure of vertex {}", status.zero_unknowns.size(),
+    return fmt::format("the tangent is singular: {} pivots vanish, first the pressure of vertex {}",
+                       status.zero_unknowns.size(),
                        equations.discretisation().pressure_vertices()[static_cast<std::size_t>(dof - 3 * n)]);
   }
-  return fmt::format("the tangent is singular: {} pivots vanish, first at node {} component {}", status.zero_unknowns.size(), dof / 3,
-                     "xyz"[dof % 3]);
+  return fmt::format("the tangent is singular: {} pivots vanish, first at node {} component {}",
+                     status.zero_unknowns.size(), dof / 3, "xyz"[dof % 3]);
 }
 
 Eigen::VectorXd TangentFactor::coupling(Equations& equations, const Eigen::MatrixXd& pressure) const {
@@ -187,7 +196,8 @@ void TangentFactor::solve(Eigen::VectorXd& x) const {
 
 Eigen::VectorXd TangentFactor::multiply(const Equations& equations, const Eigen::VectorXd& x) const {
   Eigen::VectorXd y(x.size());
-  fem::multiply({&equations.unknowns().pattern, values_.data()}, {x.data(), static_cast<std::size_t>(x.size())},
+  fem::multiply({&equations.unknowns().pattern, values_.data()},
+                {x.data(), static_cast<std::size_t>(x.size())},
                 {y.data(), static_cast<std::size_t>(y.size())});
   return y;
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// The factorised tangent: one analysis per set of unknowns, the last factor kept for predictors, chord iterations and
-/// the count of negative modes.
+/// The factorised tangent: one analysis per set of unknowns, the last factor kept for predictors, chord
+/// iterations and the count of negative modes.
 
 #include <Eigen/Core>
 #include <memory>
@@ -21,8 +21,8 @@ class TangentFactor {
   /// For the equations' present unknowns; forgets the factor.
   void analyse(const Equations& equations);
 
-  /// Takes the tangent at a configuration and factorises it. Empty when it can be solved with; else why not, naming node
-  /// and component.
+  /// Takes the tangent at a configuration and factorises it. Empty when it can be solved with; else why not,
+  /// naming node and component.
   std::string make(Equations& equations, const Configuration& at, const LoadPoint& load);
 
   bool ready() const { return ready_; }
@@ -33,8 +33,8 @@ class TangentFactor {
   /// y = K x of the matrix last factorised (its symmetric part where it is not symmetric).
   Eigen::VectorXd multiply(const Equations& equations, const Eigen::VectorXd& x) const;
 
-  /// Negative eigenvalues of the tangent beyond those that the pressures of a saddle point bring; none where the solver
-  /// does not tell.
+  /// Negative eigenvalues of the tangent beyond those that the pressures of a saddle point bring; none where
+  /// the solver does not tell.
   struct NegativeModes {
     long count = 0;
     std::string method;
@@ -44,14 +44,16 @@ class TangentFactor {
   /// Where the factor was made.
   const Configuration& configuration() const { return at_; }
   const Eigen::VectorXd& amplitude() const { return amplitude_; }
-  // Condensed formulations: the matrix is K + B' U'' B with the change of volume B = Dθ where the factor was made. A
-  // correction of the pressure must go through the same B, or the bulk modulus multiplies the difference.
+  // Condensed formulations: the matrix is K + B' U'' B with the change of volume B = Dθ where the factor was
+  // made. A correction of the pressure must go through the same B, or the bulk modulus multiplies the
+  // difference.
   /// B' (pressure), by unknown.
   Eigen::VectorXd coupling(Equations& equations, const Eigen::MatrixXd& pressure) const;
   /// U'' B (step by unknown): the change of pressure that the matrix connects with a step.
   Eigen::MatrixXd pressure_change(Equations& equations, const Eigen::VectorXd& step) const;
 
-  /// What a new tangent and factor costs over a chord iteration (residual and back-substitution), by counted work.
+  /// What a new tangent and factor costs over a chord iteration (residual and back-substitution), by counted
+  /// work.
   double cost_ratio() const { return cost_ratio_; }
 
   long factorisations = 0, analyses = 0;
