@@ -265,6 +265,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"out-of-range", "A number lies outside its range; the message shows the range."},
       {"output-rate-too-low", "The envelope's rate is too low for its cut-off frequency."},
       {"outside-signal", "Samples were asked for outside the recorded time."},
+      {"parameter-range",
+       "A parameter of a material lies outside its range; the message gives law, parameter and range."},
       {"penalty-chosen",
        "The bulk modulus around which the augmented Lagrange iteration makes a body exactly "
        "incompressible; the result does not depend on it."},
