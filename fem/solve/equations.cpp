@@ -63,7 +63,7 @@ Equations::Equations(const Problem& problem, const SolveOptions& options)
   cell_size_m_ = std::cbrt(volume_ / discretisation_->cell_count());
   assembly_ = std::make_unique<Assembly>(discretisation_, problem.materials, problem.tissue, penalty_pa_,
                                          options.threads);
-  loads_ = std::make_unique<Loads>(problem, *discretisation_);
+  loads_ = std::make_unique<Loads>(problem, *discretisation_, stiffness_pa_, cell_size_m_);
 }
 
 bool Equations::constrain(const std::vector<std::string>& released) {
@@ -91,7 +91,7 @@ double Equations::displacement_norm(const Eigen::VectorXd& by_unknown) const {
 
 void Equations::finish(Evaluation& e, const Configuration& configuration, const LoadPoint& load) const {
   if (e.sums.failure) return;
-  e.external = loads_->force(load.amplitude, configuration.dofs);
+  e.external = loads_->force(load.amplitude, configuration);
   if (released_force_.size() > 0) e.external += load.released * released_force_;
   e.residual = unknowns_.restrict(e.internal - e.external);
   const Eigen::Index displacements = 3 * static_cast<Eigen::Index>(discretisation_->node_count());
@@ -149,7 +149,7 @@ Evaluation Equations::linearise(Configuration& configuration, const LoadPoint& l
   e.sums = assembly_->tangent(configuration, unknowns_, e.internal, tangent.lower);
   ++tangent_evaluations;
   finish(e, configuration, load);
-  tangent.loads = loads_->tangent(load.amplitude, configuration.dofs);
+  tangent.loads = loads_->tangent(load.amplitude, configuration);
   seconds += watch.seconds();
   return e;
 }
@@ -178,8 +178,10 @@ bool Equations::find_unsymmetry() const {
     };
     free_part(probe);
     free_part(other);
+    Configuration here;
+    here.dofs = dofs;
     double one = 0.0, two = 0.0, size = 0.0;
-    for (const FaceTangent& face : loads_->tangent(full, dofs)) {
+    for (const FaceTangent& face : loads_->tangent(full, here)) {
       const auto m = static_cast<Eigen::Index>(face.nodes.size());
       Eigen::VectorXd p(3 * m), o(3 * m);
       for (Eigen::Index a = 0; a < m; ++a) {

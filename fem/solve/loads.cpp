@@ -6,8 +6,9 @@
 
 namespace brachium::fem {
 
-Loads::Loads(const Problem& problem, const Discretisation& discretisation)
-    : dof_count_(discretisation.dof_count()) {
+Loads::Loads(const Problem& problem, const Discretisation& discretisation, double stiffness_pa,
+             double cell_size_m)
+    : dof_count_(discretisation.dof_count()), contacts_(problem, discretisation, stiffness_pa, cell_size_m) {
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     const BoundaryCondition& condition = problem.conditions[i];
     const int index = static_cast<int>(i);
@@ -29,13 +30,14 @@ Loads::Loads(const Problem& problem, const Discretisation& discretisation)
   }
 }
 
-Eigen::VectorXd Loads::force(const Eigen::VectorXd& amplitude, const Eigen::VectorXd& dofs) const {
+Eigen::VectorXd Loads::force(const Eigen::VectorXd& amplitude, const Configuration& configuration) const {
   Eigen::VectorXd f = Eigen::VectorXd::Zero(dof_count_);
   for (const Dead& dead : dead_) f += amplitude[dead.condition] * dead.force;
   for (const Pressure& p : pressures_) {
     const double now = amplitude[p.condition] * p.pressure_pa;
-    if (now != 0.0) p.surface.add_pressure(now, dofs, f);
+    if (now != 0.0) p.surface.add_pressure(now, configuration.dofs, f);
   }
+  contacts_.add_force(amplitude, configuration.dofs, configuration.contact_multiplier, f);
   return f;
 }
 
@@ -43,14 +45,16 @@ bool Loads::has_pressure() const {
   return !pressures_.empty();
 }
 
-std::vector<FaceTangent> Loads::tangent(const Eigen::VectorXd& amplitude, const Eigen::VectorXd& dofs) const {
+std::vector<FaceTangent> Loads::tangent(const Eigen::VectorXd& amplitude,
+                                        const Configuration& configuration) const {
   std::vector<FaceTangent> all;
   for (const Pressure& p : pressures_) {
     const double now = amplitude[p.condition] * p.pressure_pa;
     if (now == 0.0) continue;
-    std::vector<FaceTangent> tangents = p.surface.pressure_tangent(now, dofs);
+    std::vector<FaceTangent> tangents = p.surface.pressure_tangent(now, configuration.dofs);
     std::move(tangents.begin(), tangents.end(), std::back_inserter(all));
   }
+  contacts_.append_tangents(amplitude, configuration.dofs, configuration.contact_multiplier, all);
   return all;
 }
 

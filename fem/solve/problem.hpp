@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "data/model/mesh.hpp"
+#include "fem/contact/contact.hpp"
 #include "fem/fibre/field.hpp"
 #include "fem/formulation.hpp"
 #include "fem/material/material.hpp"
@@ -96,6 +97,7 @@ struct Problem {
   std::vector<RegionMaterial> materials;  ///< one per region of the mesh, in its order
   TissueField tissue;                     ///< fibres and blending at the cells' quadrature points
   std::vector<BoundaryCondition> conditions;
+  std::vector<Contact> contacts;          ///< with rigid bodies
   std::vector<Phase> programme;
 };
 

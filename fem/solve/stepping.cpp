@@ -140,7 +140,31 @@ Stepper::Attempt Stepper::try_newton(double time, StepRecord& record) {
   attempt.accepted = outcome.converged;
   attempt.reason = outcome.reason;
   attempt.last = std::move(outcome.last);
+  press(attempt, to, record);
   return attempt;
+}
+
+/// Uzawa's iteration: contact pressures become multipliers until the penetration is within its tolerance.
+void Stepper::press(Attempt& attempt, const LoadPoint& load, StepRecord& record) {
+  const Contacts& contacts = equations_.loads().contacts();
+  if (contacts.empty()) return;
+  Configuration& c = attempt.configuration;
+  for (int k = 0; attempt.accepted; ++k) {
+    const double ratio = contacts.penetration_ratio(load.amplitude, c.dofs, c.contact_multiplier);
+    if (ratio <= 1.0) return;
+    if (k == options_.max_augmentations) {
+      attempt.accepted = false;
+      attempt.reason = fmt::format("{} augmentations left a contact gap of {:.3g} times its tolerance; a higher penalty needs fewer", k, ratio);
+      return;
+    }
+    c.contact_multiplier = contacts.pressures(load.amplitude, c.dofs, c.contact_multiplier);
+    NewtonOutcome outcome = Newton(equations_, factor_, newton_settings(options_)).run(c, load, record.step, record.iterations);
+    count(outcome, record);
+    ++record.augmentations;
+    attempt.accepted = outcome.converged;
+    attempt.reason = outcome.reason;
+    attempt.last = std::move(outcome.last);
+  }
 }
 
 Stepper::Attempt Stepper::try_relaxation(double time, StepRecord& record) {

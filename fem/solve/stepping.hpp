@@ -46,6 +46,7 @@ class Stepper {
   std::string after_failure(Attempt& attempt, double h, double time, StepRecord& record, bool& again);
   Attempt try_newton(double time, StepRecord& record);
   Attempt try_relaxation(double time, StepRecord& record);
+  void press(Attempt& attempt, const LoadPoint& load, StepRecord& record);
   bool wants_stability(double time) const;
   Configuration first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record,
                             Eigen::MatrixXd& pressure);
