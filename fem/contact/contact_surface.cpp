@@ -35,14 +35,22 @@ Quadrature face_points(data::CellType type, int n) {
 
 }  // namespace
 
-ContactSurface::ContactSurface(const Discretisation& discretisation, const std::string& surface, RigidShape shape, ContactOptions options)
+ContactSurface::ContactSurface(const Discretisation& discretisation, const std::string& surface,
+                               RigidShape shape, ContactOptions options)
     : discretisation_(&discretisation), shape_(std::move(shape)), options_(options) {
   if (!(options.penalty_pa_per_m > 0.0) || !std::isfinite(options.penalty_pa_per_m)) {
-    throw data::InputError("contact-option", fmt::format("the contact penalty is {} Pa/m", options.penalty_pa_per_m), "it must be above 0; (10 .. 100)(c1 + c2)/h is a start");
+    throw data::InputError("contact-option",
+                           fmt::format("the contact penalty is {} Pa/m", options.penalty_pa_per_m),
+                           "it must be above 0; (10 .. 100)(c1 + c2)/h is a start");
   }
-  if (!(options.smoothing_m >= 0.0)) throw data::InputError("contact-option", fmt::format("the contact's smoothing width is {} m", options.smoothing_m), "it must not be negative");
+  if (!(options.smoothing_m >= 0.0))
+    throw data::InputError("contact-option",
+                           fmt::format("the contact's smoothing width is {} m", options.smoothing_m),
+                           "it must not be negative");
   if (options.points_per_direction < 1 || options.points_per_direction > 5) {
-    throw data::InputError("contact-option", fmt::format("{} contact points a direction", options.points_per_direction), "choose 1 to 5");
+    throw data::InputError("contact-option",
+                           fmt::format("{} contact points a direction", options.points_per_direction),
+                           "choose 1 to 5");
   }
   check(shape_, surface);
   const data::Mesh& mesh = discretisation.mesh();
@@ -60,7 +68,8 @@ ContactSurface::ContactSurface(const Discretisation& discretisation, const std::
   for (Eigen::Index f = 0; f < faces; ++f) {
     const data::CellFace& face = named.faces[static_cast<std::size_t>(f)];
     const std::span<const int> local = data::face_nodes(mesh.type, face.face);
-    for (std::size_t a = 0; a < local.size(); ++a) faces_(static_cast<Eigen::Index>(a), f) = mesh.cells(local[a], face.cell);
+    for (std::size_t a = 0; a < local.size(); ++a)
+      faces_(static_cast<Eigen::Index>(a), f) = mesh.cells(local[a], face.cell);
     for (int q = 0; q < rule.size(); ++q) {
       Eigen::Vector3d r = Eigen::Vector3d::Zero(), s = r;
       for (Eigen::Index a = 0; a < faces_.rows(); ++a) {
@@ -76,7 +85,8 @@ ContactSurface::Pressure ContactSurface::pressure(double gap, double multiplier)
   const double eps = options_.penalty_pa_per_m, half = 0.5 * options_.smoothing_m;
   if (multiplier == 0.0 && gap < half && gap > -half) {  // eps (w/2 - g)^2 / (2 w)
     const double reach = half - gap, width = options_.smoothing_m;
-    return {eps * reach * reach * reach / (6.0 * width), eps * reach * reach / (2.0 * width), -eps * reach / width};
+    return {eps * reach * reach * reach / (6.0 * width), eps * reach * reach / (2.0 * width),
+            -eps * reach / width};
   }
   const double t = multiplier - eps * gap;
   if (!(t > 0.0)) return {0.0, 0.0, 0.0};
@@ -95,7 +105,8 @@ Eigen::Vector3d ContactSurface::position(int face, int q, const Eigen::VectorXd&
   return x;
 }
 
-ContactSums ContactSurface::add_force(const Eigen::VectorXd& dofs, const Pose& pose, const Eigen::VectorXd& multiplier_pa, Eigen::VectorXd& force) const {
+ContactSums ContactSurface::add_force(const Eigen::VectorXd& dofs, const Pose& pose,
+                                      const Eigen::VectorXd& multiplier_pa, Eigen::VectorXd& force) const {
   ContactSums sums;
   const int n_q = static_cast<int>(value_.size());
   for (int f = 0; f < faces_.cols(); ++f) {
@@ -108,7 +119,8 @@ ContactSums ContactSurface::add_force(const Eigen::VectorXd& dofs, const Pose& p
       sums.energy_j += weight_[point] * p.energy;
       if (!(p.pressure > 0.0)) continue;
       const Eigen::Vector3d push = weight_[point] * p.pressure * d.gradient;
-      for (Eigen::Index a = 0; a < faces_.rows(); ++a) force.segment<3>(3 * faces_(a, f)) += value_[static_cast<std::size_t>(q)][a] * push;
+      for (Eigen::Index a = 0; a < faces_.rows(); ++a)
+        force.segment<3>(3 * faces_(a, f)) += value_[static_cast<std::size_t>(q)][a] * push;
       sums.force_n += push;
       sums.moment_n_m += x.cross(push);
       sums.greatest_penetration_m = std::max(sums.greatest_penetration_m, -d.value);
@@ -120,7 +132,8 @@ ContactSums ContactSurface::add_force(const Eigen::VectorXd& dofs, const Pose& p
   return sums;
 }
 
-std::vector<FaceTangent> ContactSurface::tangent(const Eigen::VectorXd& dofs, const Pose& pose, const Eigen::VectorXd& multiplier_pa) const {
+std::vector<FaceTangent> ContactSurface::tangent(const Eigen::VectorXd& dofs, const Pose& pose,
+                                                 const Eigen::VectorXd& multiplier_pa) const {
   std::vector<FaceTangent> tangents;
   const int n_q = static_cast<int>(value_.size());
   const Eigen::Index nodes = faces_.rows();
@@ -135,7 +148,8 @@ std::vector<FaceTangent> ContactSurface::tangent(const Eigen::VectorXd& dofs, co
         face.nodes.assign(faces_.col(f).begin(), faces_.col(f).end());
         face.values = Eigen::MatrixXd::Zero(3 * nodes, 3 * nodes);
       }
-      const Eigen::Matrix3d k = weight_[point] * (p.slope * d.gradient * d.gradient.transpose() + p.pressure * d.hessian);
+      const Eigen::Matrix3d k =
+          weight_[point] * (p.slope * d.gradient * d.gradient.transpose() + p.pressure * d.hessian);
       const Eigen::VectorXd& N = value_[static_cast<std::size_t>(q)];
       for (Eigen::Index a = 0; a < nodes; ++a) {
         for (Eigen::Index b = 0; b < nodes; ++b) face.values.block<3, 3>(3 * a, 3 * b) += N[a] * N[b] * k;
@@ -146,28 +160,33 @@ std::vector<FaceTangent> ContactSurface::tangent(const Eigen::VectorXd& dofs, co
   return tangents;
 }
 
-ContactPoints ContactSurface::points(const Eigen::VectorXd& dofs, const Pose& pose, const Eigen::VectorXd& multiplier_pa) const {
+ContactPoints ContactSurface::points(const Eigen::VectorXd& dofs, const Pose& pose,
+                                     const Eigen::VectorXd& multiplier_pa) const {
   const int n_q = static_cast<int>(value_.size()), count = point_count();
   ContactPoints result{Eigen::Matrix3Xd(3, count), Eigen::VectorXd(count), Eigen::VectorXd(count), weight_};
   for (int i = 0; i < count; ++i) {
     result.position_m.col(i) = position(i / n_q, i % n_q, dofs);
     result.gap_m[i] = distance(shape_, pose, result.position_m.col(i)).value;
-    result.pressure_pa[i] = pressure(result.gap_m[i], multiplier_pa.size() > 0 ? multiplier_pa[i] : 0.0).pressure;
+    result.pressure_pa[i] =
+        pressure(result.gap_m[i], multiplier_pa.size() > 0 ? multiplier_pa[i] : 0.0).pressure;
   }
   return result;
 }
 
-std::vector<char> ContactSurface::active_set(const Eigen::VectorXd& dofs, const Pose& pose, const Eigen::VectorXd& multiplier_pa) const {
+std::vector<char> ContactSurface::active_set(const Eigen::VectorXd& dofs, const Pose& pose,
+                                             const Eigen::VectorXd& multiplier_pa) const {
   const ContactPoints all = points(dofs, pose, multiplier_pa);
   std::vector<char> active(static_cast<std::size_t>(point_count()));
-  for (int i = 0; i < point_count(); ++i) active[static_cast<std::size_t>(i)] = all.pressure_pa[i] > 0.0 ? 1 : 0;
+  for (int i = 0; i < point_count(); ++i)
+    active[static_cast<std::size_t>(i)] = all.pressure_pa[i] > 0.0 ? 1 : 0;
   return active;
 }
 
 double ContactSurface::least_gap_m(const Eigen::VectorXd& dofs, const Pose& pose) const {
   double least = std::numeric_limits<double>::infinity();
   const int n_q = static_cast<int>(value_.size());
-  for (int i = 0; i < point_count(); ++i) least = std::min(least, distance(shape_, pose, position(i / n_q, i % n_q, dofs)).value);
+  for (int i = 0; i < point_count(); ++i)
+    least = std::min(least, distance(shape_, pose, position(i / n_q, i % n_q, dofs)).value);
   return least;
 }
 

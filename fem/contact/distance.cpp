@@ -13,7 +13,8 @@
 namespace brachium::fem {
 namespace {
 
-/// Distance r - R from an offset vector d = x - p of length r that spans the directions in which the body is round.
+/// Distance r - R from an offset vector d = x - p of length r that spans the directions in which the body is
+/// round.
 Distance round(const Eigen::Vector3d& d, const Eigen::Matrix3d& across, double radius) {
   const double r = d.norm();
   if (!(r > 0.0)) return {-radius, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
@@ -26,7 +27,9 @@ Distance of(const HalfSpace& s, const Eigen::Vector3d& x) {
   return {n.dot(x - s.point_m), n, Eigen::Matrix3d::Zero()};
 }
 
-Distance of(const Sphere& s, const Eigen::Vector3d& x) { return round(x - s.centre_m, Eigen::Matrix3d::Identity(), s.radius_m); }
+Distance of(const Sphere& s, const Eigen::Vector3d& x) {
+  return round(x - s.centre_m, Eigen::Matrix3d::Identity(), s.radius_m);
+}
 
 Distance of(const Cylinder& s, const Eigen::Vector3d& x) {
   const Eigen::Vector3d e = s.axis.normalized();
@@ -44,19 +47,22 @@ Distance of(const Capsule& s, const Eigen::Vector3d& x) {
 }
 
 /// Foot of the perpendicular on an ellipsoid: p_i = a_i^2 y_i / (a_i^2 + t) with the largest root t of
-/// sum (a_i y_i / (a_i^2 + t))^2 = 1 (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid").
-/// The left side falls from infinity to 0 on (-min a^2, inf): bisection keeps Newton inside. On a symmetry plane inside
-/// the evolute the foot is not unique; the one of the smallest semi-axis is taken.
+/// sum (a_i y_i / (a_i^2 + t))^2 = 1 (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a
+/// hyperellipsoid"). The left side falls from infinity to 0 on (-min a^2, inf): bisection keeps Newton
+/// inside. On a symmetry plane inside the evolute the foot is not unique; the one of the smallest semi-axis
+/// is taken.
 Eigen::Vector3d ellipsoid_foot(const Eigen::Vector3d& a, const Eigen::Vector3d& y) {
   const Eigen::Vector3d a2 = a.cwiseAbs2();
   int smallest = 0;
   a2.minCoeff(&smallest);
-  const auto g = [&](double t) { return (a.cwiseProduct(y).cwiseQuotient(a2 + Eigen::Vector3d::Constant(t))).squaredNorm() - 1.0; };
+  const auto g = [&](double t) {
+    return (a.cwiseProduct(y).cwiseQuotient(a2 + Eigen::Vector3d::Constant(t))).squaredNorm() - 1.0;
+  };
   double lower = -a2[smallest] + a[smallest] * std::abs(y[smallest]);  // g >= 0 here, from the one term
   double upper = -a2[smallest] + a.cwiseProduct(y).norm();             // g <= 0 here
   if (!(a2[smallest] + upper > 0.0) || g(-a2[smallest] * (1.0 - 1e-15)) < 0.0) {
-    // On the plane y_smallest = 0, so deep inside that even t = -a^2 gives too little: the root stays there and the
-    // missing part of the unit length is the smallest axis' own.
+    // On the plane y_smallest = 0, so deep inside that even t = -a^2 gives too little: the root stays there
+    // and the missing part of the unit length is the smallest axis' own.
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
     double rest = 1.0;
     for (int i = 0; i < 3; ++i) {
@@ -69,11 +75,13 @@ Eigen::Vector3d ellipsoid_foot(const Eigen::Vector3d& a, const Eigen::Vector3d& 
     return p;
   }
   double t = upper;
-  for (int iteration = 0; iteration < 200 && upper - lower > 1e-16 * (a2.maxCoeff() + std::abs(t)); ++iteration) {
+  for (int iteration = 0; iteration < 200 && upper - lower > 1e-16 * (a2.maxCoeff() + std::abs(t));
+       ++iteration) {
     const double value = g(t);
     (value >= 0.0 ? lower : upper) = t;
     const Eigen::Vector3d q = a2 + Eigen::Vector3d::Constant(t);
-    const double slope = -2.0 * (a2.cwiseProduct(y.cwiseAbs2()).cwiseQuotient(q.cwiseProduct(q.cwiseAbs2()))).sum();
+    const double slope =
+        -2.0 * (a2.cwiseProduct(y.cwiseAbs2()).cwiseQuotient(q.cwiseProduct(q.cwiseAbs2()))).sum();
     double next = t - value / slope;
     if (!(next > lower && next < upper)) next = 0.5 * (lower + upper);
     if (next == t) break;
@@ -97,16 +105,20 @@ Distance of(const Ellipsoid& s, const Eigen::Vector3d& x) {
   return {value, s.axes * n, s.axes * (0.5 * (hessian + hessian.transpose())) * s.axes.transpose()};
 }
 
-Distance of(const TriangleBody& s, const Eigen::Vector3d& x) { return s.grid->evaluate(x); }
+Distance of(const TriangleBody& s, const Eigen::Vector3d& x) {
+  return s.grid->evaluate(x);
+}
 
 void positive(double value, const char* what, const std::string& body) {
   if (value > 0.0 && std::isfinite(value)) return;
-  throw data::InputError("contact-shape", fmt::format("{} of body `{}` is {}", what, body, value), "it must be above 0 and finite");
+  throw data::InputError("contact-shape", fmt::format("{} of body `{}` is {}", what, body, value),
+                         "it must be above 0 and finite");
 }
 
 void not_zero(const Eigen::Vector3d& v, const char* what, const std::string& body) {
   if (v.norm() > 0.0 && v.allFinite()) return;
-  throw data::InputError("contact-shape", fmt::format("{} of body `{}` has no direction", what, body), "give a vector that is not zero");
+  throw data::InputError("contact-shape", fmt::format("{} of body `{}` has no direction", what, body),
+                         "give a vector that is not zero");
 }
 
 struct Check {
@@ -124,7 +136,8 @@ struct Check {
   void operator()(const Ellipsoid& s) const {
     for (int i = 0; i < 3; ++i) positive(s.semi_axes_m[i], "a semi-axis", body);
     if (!((s.axes.transpose() * s.axes - Eigen::Matrix3d::Identity()).norm() < 1e-9)) {
-      throw data::InputError("contact-shape", fmt::format("the axes of body `{}` are not orthonormal", body), "give three unit vectors at right angles");
+      throw data::InputError("contact-shape", fmt::format("the axes of body `{}` are not orthonormal", body),
+                             "give three unit vectors at right angles");
     }
   }
   void operator()(const TriangleBody& s) const {
@@ -140,9 +153,12 @@ Distance distance(const RigidShape& shape, const Eigen::Vector3d& x) {
 
 Distance distance(const RigidShape& shape, const Pose& pose, const Eigen::Vector3d& x) {
   const Distance at_home = distance(shape, pose.rotation.transpose() * (x - pose.translation_m));
-  return {at_home.value, pose.rotation * at_home.gradient, pose.rotation * at_home.hessian * pose.rotation.transpose()};
+  return {at_home.value, pose.rotation * at_home.gradient,
+          pose.rotation * at_home.hessian * pose.rotation.transpose()};
 }
 
-void check(const RigidShape& shape, const std::string& body) { std::visit(Check{body}, shape); }
+void check(const RigidShape& shape, const std::string& body) {
+  std::visit(Check{body}, shape);
+}
 
 }  // namespace brachium::fem

@@ -1,14 +1,14 @@
 #pragma once
 /// Rigid bodies as signed distances: value, gradient and Hessian at a point, outside positive.
 ///
-/// Contact needs nothing else: with the gap g(x) = distance, the energy 1/2 eps <-g>^2 gives the force eps <-g> grad g
-/// and the symmetric tangent eps grad g (x) grad g - eps <-g> Hess g, whatever the shape.
+/// Contact needs nothing else: with the gap g(x) = distance, the energy 1/2 eps <-g>^2 gives the force eps
+/// <-g> grad g and the symmetric tangent eps grad g (x) grad g - eps <-g> Hess g, whatever the shape.
 ///
-/// | symbol | identifier | unit | meaning                                                                          |
+/// | symbol | identifier | unit | meaning |
 /// |--------|------------|------|----------------------------------------------------------------------------------|
-/// | g      | value      | m    | signed distance, negative inside                                                 |
-/// | n      | gradient   | 1    | outward normal of the closest point (of length 1 but for distance grids)         |
-/// | dn/dx  | hessian    | 1/m  | on a surface of principal curvatures k_i: sum k_i/(1 + k_i g) t_i (x) t_i        |
+/// | g      | value      | m    | signed distance, negative inside | | n      | gradient   | 1    | outward
+/// normal of the closest point (of length 1 but for distance grids)         | | dn/dx  | hessian    | 1/m  |
+/// on a surface of principal curvatures k_i: sum k_i/(1 + k_i g) t_i (x) t_i        |
 
 #include <Eigen/Core>
 #include <memory>
@@ -64,13 +64,13 @@ struct TriangleBody {
 
 using RigidShape = std::variant<HalfSpace, Sphere, Cylinder, Capsule, Ellipsoid, TriangleBody>;
 
-/// The distance at x. Points at which the closest point is not unique (a sphere's centre, a cylinder's axis) have none:
-/// the value is right, gradient and Hessian are zero. A distance grid is far from its body where x is outside its box:
-/// then the distance to the box's nearest point is added, with zero Hessian.
+/// The distance at x. Points at which the closest point is not unique (a sphere's centre, a cylinder's axis)
+/// have none: the value is right, gradient and Hessian are zero. A distance grid is far from its body where x
+/// is outside its box: then the distance to the box's nearest point is added, with zero Hessian.
 Distance distance(const RigidShape& shape, const Eigen::Vector3d& x_m);
 
-/// Throws InputError("contact-shape") naming `body`, parameter and value: radii and semi-axes not above 0, zero axes,
-/// axes that are not orthonormal.
+/// Throws InputError("contact-shape") naming `body`, parameter and value: radii and semi-axes not above 0,
+/// zero axes, axes that are not orthonormal.
 void check(const RigidShape& shape, const std::string& body);
 
 /// A body that turns about an axis by an angle that a boundary condition's amplitude drives: its pose.

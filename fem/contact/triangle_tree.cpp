@@ -15,7 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-Vector3d corner(const TriangleMesh& mesh, int t, int k) { return mesh.points.col(mesh.triangles(k, t)); }
+Vector3d corner(const TriangleMesh& mesh, int t, int k) {
+  return mesh.points.col(mesh.triangles(k, t));
+}
 
 Vector3d area_vector(const TriangleMesh& mesh, int t) {
   return 0.5 * (corner(mesh, t, 1) - corner(mesh, t, 0)).cross(corner(mesh, t, 2) - corner(mesh, t, 0));
@@ -27,7 +29,8 @@ struct OnTriangle {
   int edge = -1, vertex = -1;
 };
 
-/// Closest point of a triangle by its Voronoi regions (Ericson 2005, "Real-Time Collision Detection", section 5.1.5).
+/// Closest point of a triangle by its Voronoi regions (Ericson 2005, "Real-Time Collision Detection",
+/// section 5.1.5).
 OnTriangle closest_on(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& x) {
   const Vector3d ab = b - a, ac = c - a, ax = x - a;
   const double d1 = ab.dot(ax), d2 = ac.dot(ax);
@@ -43,7 +46,8 @@ OnTriangle closest_on(const Vector3d& a, const Vector3d& b, const Vector3d& c, c
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return {a + d2 / (d2 - d6) * ac, 2, -1};
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), 1, -1};
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
+    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), 1, -1};
   const double scale = 1.0 / (va + vb + vc);
   return {a + vb * scale * ab + vc * scale * ac, -1, -1};
 }
@@ -59,17 +63,21 @@ std::map<std::pair<int, int>, std::vector<int>> edges_of(const TriangleMesh& mes
 }  // namespace
 
 void check(const TriangleMesh& mesh) {
-  if (mesh.triangles.cols() == 0) throw data::InputError("triangle-mesh-open", "a triangle mesh without triangles encloses nothing");
+  if (mesh.triangles.cols() == 0)
+    throw data::InputError("triangle-mesh-open", "a triangle mesh without triangles encloses nothing");
   for (int t = 0; t < mesh.triangles.cols(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int p = mesh.triangles(k, t);
       if (p >= 0 && p < mesh.points.cols()) continue;
-      throw data::InputError("triangle-mesh-index", fmt::format("triangle {} names point {} of {}", t, p, mesh.points.cols()));
+      throw data::InputError("triangle-mesh-index",
+                             fmt::format("triangle {} names point {} of {}", t, p, mesh.points.cols()));
     }
-    const double longest = std::max({(corner(mesh, t, 1) - corner(mesh, t, 0)).norm(), (corner(mesh, t, 2) - corner(mesh, t, 1)).norm(),
+    const double longest = std::max({(corner(mesh, t, 1) - corner(mesh, t, 0)).norm(),
+                                     (corner(mesh, t, 2) - corner(mesh, t, 1)).norm(),
                                      (corner(mesh, t, 0) - corner(mesh, t, 2)).norm()});
     if (!(area_vector(mesh, t).norm() > 1e-12 * longest * longest)) {
-      throw data::InputError("triangle-mesh-degenerate", fmt::format("triangle {} has no area", t), "remove it, or merge its points");
+      throw data::InputError("triangle-mesh-degenerate", fmt::format("triangle {} has no area", t),
+                             "remove it, or merge its points");
     }
   }
   const auto edges = edges_of(mesh);
@@ -77,16 +85,25 @@ void check(const TriangleMesh& mesh) {
     const auto back = edges.find({edge.second, edge.first});
     if (triangles.size() > 1) {
       throw data::InputError("triangle-mesh-inverted",
-                             fmt::format("triangles {} and {} run along edge {}-{} in the same direction: they do not agree on the outside", triangles[0], triangles[1], edge.first, edge.second),
+                             fmt::format("triangles {} and {} run along edge {}-{} in the same direction: "
+                                         "they do not agree on the outside",
+                                         triangles[0], triangles[1], edge.first, edge.second),
                              "turn one of them round");
     }
     if (back == edges.end()) {
-      throw data::InputError("triangle-mesh-open", fmt::format("edge {}-{} belongs to triangle {} only: the surface is not closed", edge.first, edge.second, triangles[0]), "close the hole");
+      throw data::InputError("triangle-mesh-open",
+                             fmt::format("edge {}-{} belongs to triangle {} only: the surface is not closed",
+                                         edge.first, edge.second, triangles[0]),
+                             "close the hole");
     }
   }
   double volume = 0.0;
-  for (int t = 0; t < mesh.triangles.cols(); ++t) volume += area_vector(mesh, t).dot(corner(mesh, t, 0)) / 3.0;
-  if (!(volume > 0.0)) throw data::InputError("triangle-mesh-inverted", "the triangles face inward: the volume they enclose is negative", "turn all of them round");
+  for (int t = 0; t < mesh.triangles.cols(); ++t)
+    volume += area_vector(mesh, t).dot(corner(mesh, t, 0)) / 3.0;
+  if (!(volume > 0.0))
+    throw data::InputError("triangle-mesh-inverted",
+                           "the triangles face inward: the volume they enclose is negative",
+                           "turn all of them round");
 }
 
 TriangleTree::TriangleTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
@@ -106,7 +123,8 @@ TriangleTree::TriangleTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
     }
   }
   Eigen::Matrix3Xd centres(3, count);
-  for (int t = 0; t < count; ++t) centres.col(t) = (corner(mesh_, t, 0) + corner(mesh_, t, 1) + corner(mesh_, t, 2)) / 3.0;
+  for (int t = 0; t < count; ++t)
+    centres.col(t) = (corner(mesh_, t, 0) + corner(mesh_, t, 1) + corner(mesh_, t, 2)) / 3.0;
   order_.resize(static_cast<std::size_t>(count));
   std::iota(order_.begin(), order_.end(), 0);
   build(0, static_cast<int>(count), centres);
@@ -129,8 +147,10 @@ int TriangleTree::build(int first, int count, const Eigen::Matrix3Xd& centres) {
   int axis = 0;
   box.sizes().maxCoeff(&axis);
   const auto begin = order_.begin() + first;
-  std::nth_element(begin, begin + count / 2, begin + count, [&](int a, int b) { return centres(axis, a) < centres(axis, b); });
-  const int left = build(first, count / 2, centres), right = build(first + count / 2, count - count / 2, centres);
+  std::nth_element(begin, begin + count / 2, begin + count,
+                   [&](int a, int b) { return centres(axis, a) < centres(axis, b); });
+  const int left = build(first, count / 2, centres),
+            right = build(first + count / 2, count - count / 2, centres);
   nodes_[static_cast<std::size_t>(index)].left = left;
   nodes_[static_cast<std::size_t>(index)].right = right;
   return index;
@@ -149,7 +169,8 @@ ClosestPoint TriangleTree::closest(const Vector3d& x) const {
     if (node.left < 0) {
       for (int i = node.first; i < node.first + node.count; ++i) {
         const int t = order_[static_cast<std::size_t>(i)];
-        const OnTriangle candidate = closest_on(corner(mesh_, t, 0), corner(mesh_, t, 1), corner(mesh_, t, 2), x);
+        const OnTriangle candidate =
+            closest_on(corner(mesh_, t, 0), corner(mesh_, t, 1), corner(mesh_, t, 2), x);
         const double squared = (x - candidate.point).squaredNorm();
         if (squared < best) {
           best = squared;

@@ -9,13 +9,13 @@ namespace brachium::fem {
 
 /// Triangles with outward normals (counter-clockwise seen from outside).
 struct TriangleMesh {
-  Eigen::Matrix3Xd points;    ///< 3 x n_points [m]
-  Eigen::Matrix3Xi triangles; ///< 3 x n_triangles
+  Eigen::Matrix3Xd points;     ///< 3 x n_points [m]
+  Eigen::Matrix3Xi triangles;  ///< 3 x n_triangles
 };
 
-/// Throws InputError: "triangle-mesh-open" naming an edge that does not have two triangles, "triangle-mesh-inverted"
-/// where the enclosed volume is negative or neighbours disagree on the outside, "triangle-mesh-degenerate" naming a
-/// triangle without area, "triangle-mesh-index".
+/// Throws InputError: "triangle-mesh-open" naming an edge that does not have two triangles,
+/// "triangle-mesh-inverted" where the enclosed volume is negative or neighbours disagree on the outside,
+/// "triangle-mesh-degenerate" naming a triangle without area, "triangle-mesh-index".
 void check(const TriangleMesh& mesh);
 
 /// Where a point is closest, and on which side of the surface it is.
@@ -25,14 +25,15 @@ struct ClosestPoint {
   double signed_distance = 0.0;  ///< positive outside
 };
 
-/// A binary tree of axis-aligned boxes, split at the median of the longest side. Const, safe from several threads.
+/// A binary tree of axis-aligned boxes, split at the median of the longest side. Const, safe from several
+/// threads.
 class TriangleTree {
  public:
   /// Checks the mesh (see check).
   explicit TriangleTree(TriangleMesh mesh);
 
-  /// The closest point of the surface. The side is told by the angle-weighted pseudonormal of the face, edge or vertex
-  /// that holds it (Baerentzen & Aanaes 2005, doi:10.1109/TVCG.2005.49).
+  /// The closest point of the surface. The side is told by the angle-weighted pseudonormal of the face, edge
+  /// or vertex that holds it (Baerentzen & Aanaes 2005, doi:10.1109/TVCG.2005.49).
   ClosestPoint closest(const Eigen::Vector3d& x) const;
 
   const TriangleMesh& mesh() const { return mesh_; }

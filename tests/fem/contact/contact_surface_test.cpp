@@ -18,13 +18,16 @@ struct Body {
 };
 
 Body body(Formulation formulation) {
-  data::Mesh mesh = as_type(block(Vector3d(1.0, 1.0, 1.0), 2, 2, 2, data::CellType::hex27), cell_type(formulation));
+  data::Mesh mesh =
+      as_type(block(Vector3d(1.0, 1.0, 1.0), 2, 2, 2, data::CellType::hex27), cell_type(formulation));
   Body b;
-  b.discretisation = std::make_shared<const Discretisation>(std::make_shared<const data::Mesh>(std::move(mesh)), formulation);
+  b.discretisation = std::make_shared<const Discretisation>(
+      std::make_shared<const data::Mesh>(std::move(mesh)), formulation);
   b.dofs = Eigen::VectorXd::Zero(b.discretisation->dof_count());
   for (int n = 0; n < b.discretisation->mesh().point_count(); ++n) {
     const Vector3d X = b.discretisation->mesh().points.col(n);
-    b.dofs.segment<3>(3 * n) = 0.03 * Vector3d(std::sin(3.0 * X[1]), std::cos(2.0 * X[2]), std::sin(2.0 * X[0] + X[1]));
+    b.dofs.segment<3>(3 * n) =
+        0.03 * Vector3d(std::sin(3.0 * X[1]), std::cos(2.0 * X[2]), std::sin(2.0 * X[0] + X[1]));
   }
   return b;
 }
@@ -32,7 +35,9 @@ Body body(Formulation formulation) {
 const Sphere ball{Vector3d(0.4, 0.55, 1.7), 0.85};
 
 class EveryCell : public testing::TestWithParam<Formulation> {};
-INSTANTIATE_TEST_SUITE_P(Contact, EveryCell, testing::Values(Formulation::q2_p1_discontinuous, Formulation::q1_p0, Formulation::p2_p1_taylor_hood),
+INSTANTIATE_TEST_SUITE_P(Contact, EveryCell,
+                         testing::Values(Formulation::q2_p1_discontinuous, Formulation::q1_p0,
+                                         Formulation::p2_p1_taylor_hood),
                          [](const auto& instance) { return to_string(instance.param); });
 
 TEST_P(EveryCell, ForceIsTheDerivativeOfTheEnergyAndTheTangentOfTheForce) {
@@ -49,7 +54,8 @@ TEST_P(EveryCell, ForceIsTheDerivativeOfTheEnergyAndTheTangentOfTheForce) {
     for (const FaceTangent& face : contact.tangent(b.dofs, {}, lambda)) {
       for (std::size_t a = 0; a < face.nodes.size(); ++a) {
         for (std::size_t c = 0; c < face.nodes.size(); ++c) {
-          K.block<3, 3>(3 * face.nodes[a], 3 * face.nodes[c]) += face.values.block<3, 3>(3 * static_cast<Eigen::Index>(a), 3 * static_cast<Eigen::Index>(c));
+          K.block<3, 3>(3 * face.nodes[a], 3 * face.nodes[c]) +=
+              face.values.block<3, 3>(3 * static_cast<Eigen::Index>(a), 3 * static_cast<Eigen::Index>(c));
         }
       }
     }
@@ -65,7 +71,8 @@ TEST_P(EveryCell, ForceIsTheDerivativeOfTheEnergyAndTheTangentOfTheForce) {
       EXPECT_NEAR(-(above - below) / (2.0 * h), force[k], 1e-6 * force.norm()) << "dof " << k;
       worst = std::max(worst, ((plus - minus) / (2.0 * h) - K.col(k)).norm());
     }
-    // Points on the edge of contact change sides within the difference: a plain penalty's tangent jumps there.
+    // Points on the edge of contact change sides within the difference: a plain penalty's tangent jumps
+    // there.
     EXPECT_LT(worst, 1e-5 * K.norm());
   }
 }
@@ -77,7 +84,8 @@ TEST(Contact, TheOppositeSignOfTheCurvatureFails) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(b.dofs.size()), plus = force, minus = force;
   contact.add_force(b.dofs, {}, {}, force);
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(b.dofs.size());
-  for (int n = 0; n < b.discretisation->mesh().point_count(); ++n) direction[3 * n] = 1.0;  // along the surface
+  for (int n = 0; n < b.discretisation->mesh().point_count(); ++n)
+    direction[3 * n] = 1.0;  // along the surface
   double right = 0.0, wrong = 0.0;
   for (const FaceTangent& face : contact.tangent(b.dofs, {}, {})) {
     for (Eigen::Index a = 0; a < face.values.rows(); a += 3) {
@@ -85,7 +93,9 @@ TEST(Contact, TheOppositeSignOfTheCurvatureFails) {
     }
   }
   const ContactPoints points = contact.points(b.dofs, {}, {});
-  for (Eigen::Index q = 0; q < points.pressure_pa.size(); ++q) wrong += 2.0 * points.area_m2[q] * points.pressure_pa[q] * distance(ball, points.position_m.col(q)).hessian(0, 0);
+  for (Eigen::Index q = 0; q < points.pressure_pa.size(); ++q)
+    wrong += 2.0 * points.area_m2[q] * points.pressure_pa[q] *
+             distance(ball, points.position_m.col(q)).hessian(0, 0);
   const double h = 1e-6;
   contact.add_force(b.dofs + h * direction, {}, {}, plus);
   contact.add_force(b.dofs - h * direction, {}, {}, minus);
@@ -101,7 +111,8 @@ TEST(Contact, ForcesOnNodesSumToTheResultantAndItsMoment) {
   const ContactSums sums = contact.add_force(b.dofs, {}, {}, force);
   Vector3d total = Vector3d::Zero(), moment = total;
   for (int n = 0; n < b.discretisation->mesh().point_count(); ++n) {
-    const Vector3d f = force.segment<3>(3 * n), x = b.discretisation->mesh().points.col(n) + b.dofs.segment<3>(3 * n);
+    const Vector3d f = force.segment<3>(3 * n),
+                   x = b.discretisation->mesh().points.col(n) + b.dofs.segment<3>(3 * n);
     total += f;
     moment += x.cross(f);
   }
@@ -113,7 +124,8 @@ TEST(Contact, ForcesOnNodesSumToTheResultantAndItsMoment) {
 
 TEST(Contact, UniformPenetrationGivesPressureTimesArea) {
   const Body b = body(Formulation::q2_p1_discontinuous);
-  const ContactSurface contact(*b.discretisation, "z1", HalfSpace{Vector3d(0.0, 0.0, 0.99), -Vector3d::UnitZ()}, {1e3, 0.0, 3});
+  const ContactSurface contact(*b.discretisation, "z1",
+                               HalfSpace{Vector3d(0.0, 0.0, 0.99), -Vector3d::UnitZ()}, {1e3, 0.0, 3});
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(b.dofs.size());
   Eigen::VectorXd force = rest;
   const ContactSums sums = contact.add_force(rest, {}, {}, force);

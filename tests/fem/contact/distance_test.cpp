@@ -32,7 +32,8 @@ std::vector<Named> shapes() {
 }
 
 class EveryShape : public testing::TestWithParam<Named> {};
-INSTANTIATE_TEST_SUITE_P(Distance, EveryShape, testing::ValuesIn(shapes()), [](const auto& instance) { return instance.param.name; });
+INSTANTIATE_TEST_SUITE_P(Distance, EveryShape, testing::ValuesIn(shapes()),
+                         [](const auto& instance) { return instance.param.name; });
 
 TEST_P(EveryShape, GradientAndHessianAreDerivatives) {
   std::mt19937 random(5);
@@ -45,13 +46,17 @@ TEST_P(EveryShape, GradientAndHessianAreDerivatives) {
     if (d.value < -0.15) continue;  // deep inside, beyond the evolute, distances have kinks
     ++tried;
     for (int k = 0; k < 3; ++k) {
-      const Distance above = distance(GetParam().shape, x + h * Vector3d::Unit(k)), below = distance(GetParam().shape, x - h * Vector3d::Unit(k));
+      const Distance above = distance(GetParam().shape, x + h * Vector3d::Unit(k)),
+                     below = distance(GetParam().shape, x - h * Vector3d::Unit(k));
       EXPECT_NEAR((above.value - below.value) / (2.0 * h), d.gradient[k], 1e-7) << x.transpose();
       // A capsule's curvature jumps where its ends begin, a spline's third derivative at the grid's planes.
       const double tolerance = GetParam().name == "grid" ? 1e-3 : 1e-5;
-      const double jump = (distance(GetParam().shape, x + 3.0 * h * Vector3d::Unit(k)).hessian - distance(GetParam().shape, x - 3.0 * h * Vector3d::Unit(k)).hessian).norm();
+      const double jump = (distance(GetParam().shape, x + 3.0 * h * Vector3d::Unit(k)).hessian -
+                           distance(GetParam().shape, x - 3.0 * h * Vector3d::Unit(k)).hessian)
+                              .norm();
       if (jump < 1e-2) {
-        EXPECT_LT(((above.gradient - below.gradient) / (2.0 * h) - d.hessian.col(k)).norm(), tolerance) << x.transpose();
+        EXPECT_LT(((above.gradient - below.gradient) / (2.0 * h) - d.hessian.col(k)).norm(), tolerance)
+            << x.transpose();
       }
     }
     EXPECT_LT((d.hessian - d.hessian.transpose()).norm(), 1e-12);
@@ -67,7 +72,8 @@ TEST_P(EveryShape, MovesWithItsPose) {
   pose.rotation = Eigen::AngleAxisd(1.2, Vector3d(0.2, 1.0, 0.4).normalized()).toRotationMatrix();
   pose.translation_m = Vector3d(0.3, -0.2, 0.1);
   const Vector3d x(0.9, 0.7, -0.6);
-  const Distance home = distance(GetParam().shape, x), moved = distance(GetParam().shape, pose, pose.rotation * x + pose.translation_m);
+  const Distance home = distance(GetParam().shape, x),
+                 moved = distance(GetParam().shape, pose, pose.rotation * x + pose.translation_m);
   EXPECT_NEAR(moved.value, home.value, 1e-12);
   EXPECT_LT((moved.gradient - pose.rotation * home.gradient).norm(), 1e-12);
   EXPECT_LT((moved.hessian - pose.rotation * home.hessian * pose.rotation.transpose()).norm(), 1e-11);
@@ -92,7 +98,8 @@ TEST(Distance, OfAnEllipsoidIsThatOfItsFoot) {
 
 TEST(Distance, OfAnEllipsoidIsFiniteOnItsSymmetryPlanes) {
   const Ellipsoid e{Vector3d::Zero(), Vector3d(2.0, 1.0, 0.5), Matrix3d::Identity()};
-  for (const Vector3d& x : {Vector3d(0.0, 0.0, 0.0), Vector3d(0.3, 0.0, 0.0), Vector3d(0.0, 0.2, 0.0), Vector3d(1.0, 0.3, 0.0), Vector3d(0.0, 0.0, 0.1)}) {
+  for (const Vector3d& x : {Vector3d(0.0, 0.0, 0.0), Vector3d(0.3, 0.0, 0.0), Vector3d(0.0, 0.2, 0.0),
+                            Vector3d(1.0, 0.3, 0.0), Vector3d(0.0, 0.0, 0.1)}) {
     const Distance d = distance(e, x);
     EXPECT_TRUE(std::isfinite(d.value) && d.gradient.allFinite() && d.hessian.allFinite()) << x.transpose();
     EXPECT_LE(d.value, 0.0);
@@ -141,7 +148,8 @@ TEST(Distance, SmoothingOfAGridTakesTheFacetsOutOfTheCurvature) {
   }
   EXPECT_LT(worst_smooth, 0.35 * worst_rough);
   // A Gaussian of width s adds s^2/2 times the Laplacian, here 2/r.
-  EXPECT_NEAR(smooth.evaluate(Vector3d(1.0, 0.0, 0.0)).value - rough.evaluate(Vector3d(1.0, 0.0, 0.0)).value, 0.08 * 0.08, 2e-3);
+  EXPECT_NEAR(smooth.evaluate(Vector3d(1.0, 0.0, 0.0)).value - rough.evaluate(Vector3d(1.0, 0.0, 0.0)).value,
+              0.08 * 0.08, 2e-3);
 }
 
 TEST(Distance, RefusesBodiesThatAreNone) {
@@ -154,8 +162,10 @@ TEST(Distance, RefusesBodiesThatAreNone) {
     return std::string("accepted");
   };
   EXPECT_EQ(message(Sphere{Vector3d::Zero(), 0.0}), "contact-shape: the radius of body `humerus` is 0");
-  EXPECT_EQ(message(Capsule{Vector3d::Zero(), Vector3d::Zero(), 0.01}), "contact-shape: the axis of body `humerus` has no direction");
-  EXPECT_EQ(message(Ellipsoid{Vector3d::Zero(), {1.0, -1.0, 1.0}, Matrix3d::Identity()}), "contact-shape: a semi-axis of body `humerus` is -1");
+  EXPECT_EQ(message(Capsule{Vector3d::Zero(), Vector3d::Zero(), 0.01}),
+            "contact-shape: the axis of body `humerus` has no direction");
+  EXPECT_EQ(message(Ellipsoid{Vector3d::Zero(), {1.0, -1.0, 1.0}, Matrix3d::Identity()}),
+            "contact-shape: a semi-axis of body `humerus` is -1");
   EXPECT_EQ(message(Sphere{Vector3d::Zero(), 0.02}), "accepted");
 }
 

@@ -1,4 +1,5 @@
-/// Closest points on triangle meshes: against all triangles one by one, sides at edges and corners, bad meshes.
+/// Closest points on triangle meshes: against all triangles one by one, sides at edges and corners, bad
+/// meshes.
 
 #include <cmath>
 #include <random>
@@ -17,7 +18,8 @@ TriangleMesh cube() {
   mesh.points.resize(3, 8);
   for (int i = 0; i < 8; ++i) mesh.points.col(i) = Vector3d(i & 1, (i >> 1) & 1, (i >> 2) & 1);
   mesh.triangles.resize(3, 12);
-  const int t[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const int t[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   for (int i = 0; i < 12; ++i) mesh.triangles.col(i) = Eigen::Vector3i(t[i][0], t[i][1], t[i][2]);
   return mesh;
 }
@@ -46,10 +48,14 @@ TEST(TriangleTree, FindsWhatASearchThroughAllTrianglesFinds) {
   for (int i = 0; i < 100; ++i) {
     const Vector3d x(uniform(random), uniform(random), uniform(random));
     double best = 1e300;
-    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {  // by dense sampling of each triangle: never below the truth
+    for (Eigen::Index t = 0; t < mesh.triangles.cols();
+         ++t) {  // by dense sampling of each triangle: never below the truth
       for (int a = 0; a <= 20; ++a) {
         for (int b = 0; a + b <= 20; ++b) {
-          const Vector3d p = (a * mesh.points.col(mesh.triangles(0, t)) + b * mesh.points.col(mesh.triangles(1, t)) + (20 - a - b) * mesh.points.col(mesh.triangles(2, t))) / 20.0;
+          const Vector3d p =
+              (a * mesh.points.col(mesh.triangles(0, t)) + b * mesh.points.col(mesh.triangles(1, t)) +
+               (20 - a - b) * mesh.points.col(mesh.triangles(2, t))) /
+              20.0;
           best = std::min(best, (x - p).norm());
         }
       }
@@ -77,7 +83,8 @@ TEST(TriangleMesh, RefusesWhatEnclosesNothing) {
   EXPECT_NE(refusal(open).find("triangle-mesh-open: edge"), std::string::npos) << refusal(open);
   TriangleMesh inward = cube();
   inward.triangles.row(1).swap(inward.triangles.row(2));
-  EXPECT_EQ(refusal(inward), "triangle-mesh-inverted: the triangles face inward: the volume they enclose is negative");
+  EXPECT_EQ(refusal(inward),
+            "triangle-mesh-inverted: the triangles face inward: the volume they enclose is negative");
   TriangleMesh torn = cube();
   std::swap(torn.triangles(1, 3), torn.triangles(2, 3));
   EXPECT_NE(refusal(torn).find("in the same direction"), std::string::npos) << refusal(torn);
