@@ -1,0 +1,40 @@
+// Problems at the edge: a small part of the table that tests/bench/fem_extremes prints.
+
+#include "tests/fem/verification/extremes.hpp"
+
+#include <cmath>
+
+#include "tests/fem/verification/study.hpp"
+
+namespace brachium::fem::verification {
+namespace {
+
+TEST(Extremes, TheDistortedBoxHasTheRatioThatWasAskedFor) {
+  EXPECT_NEAR(jacobian_ratio(*distorted_box(data::CellType::hex27, 0.05)), 0.05, 1e-6);
+  EXPECT_NEAR(jacobian_ratio(*distorted_box(data::CellType::hex8, 1.0)), 1.0, 1e-6);
+}
+
+class ExtremeRow : public testing::TestWithParam<const char*> {};
+
+TEST_P(ExtremeRow, IsSolvedToAStableState) {
+  const Outcome outcome = outcome_of(extreme(GetParam(), Formulation::q2_p1_discontinuous));
+  EXPECT_TRUE(outcome.solved) << outcome.reason;
+  EXPECT_EQ(outcome.stability, "stable");
+  EXPECT_TRUE(std::isfinite(outcome.force_n));
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, ExtremeRow,
+                         testing::Values("aspect ratio 50, stretch 1.1, alpha 0.5",
+                                         "Jacobian ratio 0.05, stretch 1.2, alpha 0.5",
+                                         "stretch 0.5, passive, free sides", "stretch 2, passive, free sides",
+                                         "sigma_max x 10, stretch 1.1, alpha 1",
+                                         "tendon 1e4 times as stiff, stretch 1.05, alpha 0.5"),
+                         [](const testing::TestParamInfo<const char*>& row) {
+                           std::string name = row.param;
+                           std::erase_if(
+                               name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace brachium::fem::verification
