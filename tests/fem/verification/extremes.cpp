@@ -1,5 +1,6 @@
 #include "tests/fem/verification/extremes.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <chrono>
 #include <functional>

@@ -2,6 +2,7 @@
 // displacement in L2: 3 for quadratic and 2 for linear cells; pressure: 2, or 1 where it is constant per
 // cell.
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "fem/quantities/cell_state.hpp"
