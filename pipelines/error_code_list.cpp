@@ -62,6 +62,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"bad-range", "A range ends before it starts."},
       {"bad-rate", "A sampling rate must be greater than 0."},
       {"bad-rule", "A rule that drives a muscle by others names none, or too many."},
+      {"bad-sample",
+       "A state that a surrogate is to be made from is incomplete, not finite, outside its range, or there "
+       "twice."},
       {"bad-setting",
        "A setting of the command line cannot be used: it must be KEY=VALUE, and --only, --from and --until "
        "exclude each other."},
@@ -195,6 +198,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"missing-condition", "A trial lacks a number that the scene reads from it, such as the held mass."},
       {"missing-coordinate", "The scene has no joint coordinate of that name."},
       {"missing-dataset", "An HDF5 file lacks a dataset that its format demands."},
+      {"missing-derivative",
+       "Hermite interpolation needs both derivatives at every state; use a spline through the values "
+       "instead."},
       {"missing-fibres", "A material has fibres, and no fibre field is given."},
       {"missing-field", "A row of a file has fewer fields than its header."},
       {"missing-file",
@@ -209,6 +215,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"missing-moment", "The trial has no measured joint moment to compare with or to calibrate against."},
       {"missing-muscle", "The scene or subject has no muscle of that name."},
       {"missing-option", "A stage has an option without a default; give it a value."},
+      {"missing-output", "A state of a muscle map lacks a quantity that a surrogate is to be made of."},
       {"missing-region", "A mesh has no region of that name."},
       {"missing-scene", "A stage needs a scene, and the pipeline names none. Add `scene` to [pipeline]."},
       {"missing-segment", "The scene lacks a segment that the computation needs."},
@@ -246,6 +253,9 @@ const std::vector<ErrorCode>& error_codes() {
        "Excitations were normalised by the largest value of the trials themselves, for want of maximal "
        "contractions; amplitudes are comparable within this session only."},
       {"not-a-chain", "The segments do not hang one from the other."},
+      {"not-a-grid",
+       "States do not lie where a surrogate needs them: a full grid with every pair, or the points of a "
+       "sparse grid."},
       {"not-a-number", "A field of a file is not a number."},
       {"not-a-run", "A folder is not that of a run: it has no readable result.json."},
       {"not-a-storage-file", "A file is no OpenSim storage file."},
@@ -265,6 +275,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"out-of-range", "A number lies outside its range; the message shows the range."},
       {"output-rate-too-low", "The envelope's rate is too low for its cut-off frequency."},
       {"outside-signal", "Samples were asked for outside the recorded time."},
+      {"outside-surrogate",
+       "A surrogate was asked for a state outside those it was made from. Compute states there, or stay "
+       "inside."},
       {"parameter-range",
        "A parameter of a material lies outside its range; the message gives law, parameter and range."},
       {"penalty-chosen",
@@ -300,10 +313,13 @@ const std::vector<ErrorCode>& error_codes() {
       {"size-mismatch", "Lists that belong together differ in length."},
       {"slack-muscle",
        "A muscle's tendon is slack over a part of the motion, so that it gives no force there."},
+      {"states-missing", "A design has states without a result, or with a failed one where all are needed."},
       {"stretched-cells",
        "Cells of a mesh are much longer in one direction than in another. Use more cells along it, or raise "
        "the limit knowingly."},
       {"surface-not-plane", "A symmetry plane needs a plane surface."},
+      {"surrogate-too-fine",
+       "A sparse grid is refined so far that its surrogate would take too much memory."},
       {"time-backwards", "Time stamps go backwards."},
       {"time-gap",
        "Samples are missing. Choose `timing = \"interpolate\"` in the session description to bridge them, "
@@ -339,6 +355,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"unknown-nonlinearity", "There is no such relation between neural and muscle activation."},
       {"unknown-normalisation", "There is no such normalisation."},
       {"unknown-onset-method", "There is no such method of onset detection."},
+      {"unknown-output", "A surrogate has no output of that name."},
       {"unknown-parameter", "There is no such parameter of a muscle."},
       {"unknown-parameter-set",
        "There is no published set of material parameters of that name; the message gives the nearest."},
