@@ -138,6 +138,10 @@ class Reader {
       if (stage.spec) {
         stage.options = parse_options(entry.node(), stage.spec->options, fmt::format("stage `{}`", run),
                                       stage_keys, diagnostics_);
+        for_each_file(stage.options, stage.spec->options, [&](const OptionSpec& option, std::string& path) {
+          path = resolve(path).string();
+          file_exists(path, stage.where, fmt::format("file of option `{}`", option.key));
+        });
       }
       definition_.stages.push_back(std::move(stage));
     }

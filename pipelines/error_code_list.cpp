@@ -160,6 +160,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"mesh-cell-type",
        "A mesh file holds cells of a type that cannot be used: volumes must be tetrahedra or hexahedra of "
        "first or second order, surfaces their faces."},
+      {"mesh-choice",
+       "The table `mesh` names no body, or several: it takes one of `file`, `block`, `cylinder`, "
+       "`spindle` and `pennate`."},
       {"mesh-double-region", "A cell of a mesh belongs to two regions. Remove one of the groups."},
       {"mesh-duplicate-cell", "Two cells of a mesh have the same corners. Remove one of each pair."},
       {"mesh-duplicate-name",
@@ -210,6 +213,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"missing-group", "An HDF5 file lacks a group that its format demands."},
       {"missing-input", "A stage needs an input that is not wired. Add it to `input` of the stage."},
       {"missing-key", "A key that must be there is absent."},
+      {"missing-material",
+       "A region of the mesh has no material. Every region needs one; an entry without `regions` serves "
+       "all that no other entry names."},
       {"missing-mesh-field",
        "The mesh brings no field of that name along; the message gives the nearest."},
       {"missing-moment", "The trial has no measured joint moment to compare with or to calibrate against."},
@@ -280,6 +286,8 @@ const std::vector<ErrorCode>& error_codes() {
        "inside."},
       {"parameter-range",
        "A parameter of a material lies outside its range; the message gives law, parameter and range."},
+      {"passive-material",
+       "A phase activates regions of which none has a law with an active part."},
       {"penalty-chosen",
        "The bulk modulus around which the augmented Lagrange iteration makes a body exactly "
        "incompressible; the result does not depend on it."},
@@ -305,6 +313,8 @@ const std::vector<ErrorCode>& error_codes() {
        "There is no trial at rest whose envelope could be taken off. Name one of kind rest or passive, or "
        "leave that step out."},
       {"restart-mismatch", "A saved state belongs to another mesh, formulation or programme."},
+      {"restarted",
+       "A solve went on from the last state that an earlier run kept."},
       {"row-count-mismatch", "A file states another number of rows than it has."},
       {"rule-cycle", "Muscles are driven by rules that refer to each other in a loop."},
       {"run-in-progress",
@@ -335,7 +345,7 @@ const std::vector<ErrorCode>& error_codes() {
        "A trial was used for both training and judgement; its error is not that of an unseen trial."},
       {"trial-too-short", "A trial is shorter than the filter or window needs."},
       {"twice-given",
-       "Two rules give the same thing for one region of a mesh. Let each region be named once."},
+       "One thing was given twice: a material or a fibre rule for one region, or a name of an output."},
       {"undriven-muscle", "A muscle has no channel and no rule; it is passive."},
       {"undriven-source", "A rule drives a muscle by another one that has no excitation."},
       {"unequal-time-stamps", "Signals of one storage file must share their time stamps."},
@@ -392,6 +402,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"unsymmetric-tangent",
        "A pressure follows a surface with a free edge: the tangent is unsymmetric, and its "
        "factorisation costs more."},
+      {"unused-option",
+       "An option was given that the chosen kind or law has no use for; the ones it takes are listed."},
       {"unused-points",
        "A mesh has points that belong to no cell; they would have no stiffness. Remove them."},
       {"weak-combination", "The data determine only a combination of parameters, not each of them."},
@@ -402,6 +414,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"wrong-coordinate", "A signal belongs to another joint coordinate than is needed."},
       {"wrong-encoding", "A text file is not UTF-8."},
       {"wrong-format", "A file is of another format than expected."},
+      {"wrong-length",
+       "A list has another number of entries than it must have, such as 3 for a vector."},
       {"wrong-port", "An input takes another kind of output than the stage that is wired to it gives."},
       {"wrong-quantity", "A signal measures another quantity than the stage needs."},
       {"wrong-size", "A list has another length than needed."},

@@ -18,9 +18,9 @@ using io::TomlNode;
 
 /// Endings of option names that are units, longest first so that "rad_s" is not taken for "s".
 constexpr std::array unit_endings{
-    "kg_m2", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s", "m_s", "khz", "mhz", "hz",
+    "per_s", "kg_m2", "N_m3", "n_m3", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s", "m_s", "khz", "mhz", "hz",
     "min",   "rad",      "deg",     "Nm",    "kN",    "kg",   "mg",  "lb",  "ms",  "us",  "mm",  "cm",
-    "mV",    "uV",       "uv",      "mv",    "s",     "m",    "g",   "N",   "V",   "norm"};
+    "Pa",    "kPa",      "MPa",   "pa",   "kpa",  "mpa",  "mV",    "uV",       "uv",      "mv",    "s",     "m",    "g",   "N",   "V",   "norm"};
 
 /// An option's name without its unit: "lowpass_hz" -> "lowpass".
 std::string stem_of(const std::string& key) {
@@ -139,8 +139,13 @@ class Reader {
         return read_list<double>(spec, node);
       case OptionType::texts:
         return read_list<std::string>(spec, node);
+      case OptionType::table:
+        if (node.kind != TomlNode::Kind::table) break;
+        return std::vector<Options>{nested(spec, node)};
       case OptionType::tables:
         return read_tables(spec, node);
+      case OptionType::number_map:
+        return read_map(spec, node);
     }
     wrong_type(spec, node);
     return std::nullopt;
@@ -168,8 +173,48 @@ class Reader {
     } else {
       good = add(node);
     }
+    if (good && spec.length > 0 && values.size() != spec.length) {
+      error("wrong-length",
+            fmt::format("`{}` of {} has {} entries, not {}", spec.key, owner_, values.size(), spec.length), node.where,
+            spec.doc);
+      good = false;
+    }
     if (!good) return std::nullopt;
     return OptionValue(std::move(values));
+  }
+
+  /// { region = 0.5 }; a plain number stands for all.
+  std::optional<OptionValue> read_map(const OptionSpec& spec, const TomlNode& node) {
+    const auto is_number = [](const TomlNode& n) {
+      return n.kind == TomlNode::Kind::number || n.kind == TomlNode::Kind::integer;
+    };
+    std::map<std::string, double> values;
+    if (is_number(node)) {
+      if (!in_range(spec, node.number, node)) return std::nullopt;
+      return std::map<std::string, double>{{"*", node.number}};
+    }
+    if (node.kind != TomlNode::Kind::table) {
+      wrong_type(spec, node);
+      return std::nullopt;
+    }
+    bool good = true;
+    for (const auto& [key, member] : node.members) {
+      if (!is_number(member)) {
+        error("wrong-type",
+              fmt::format("`{}.{}` of {} must be a number, not {}", spec.key, key, owner_, io::describe(member.kind)),
+              member.where);
+        good = false;
+      } else {
+        good = in_range(spec, member.number, member) && good;
+        values[key] = member.number;
+      }
+    }
+    if (!good) return std::nullopt;
+    return OptionValue(std::move(values));
+  }
+
+  Options nested(const OptionSpec& spec, const TomlNode& node) {
+    return Reader(fmt::format("`{}` of {}", spec.key, owner_), diagnostics_).read(node, spec.fields, {});
   }
 
   std::optional<OptionValue> read_tables(const OptionSpec& spec, const TomlNode& node) {
@@ -181,9 +226,7 @@ class Reader {
       return std::nullopt;
     }
     std::vector<Options> values;
-    const std::string owner = fmt::format("`{}` of {}", spec.key, owner_);
-    for (const TomlNode& item : node.items)
-      values.push_back(Reader(owner, diagnostics_).read(item, spec.fields, {}));
+    for (const TomlNode& item : node.items) values.push_back(nested(spec, item));
     return OptionValue(std::move(values));
   }
 
@@ -196,7 +239,12 @@ TomlNode value_tree(const OptionValue& value, const OptionSpec* spec) {
   return std::visit(
       [&](const auto& v) -> TomlNode {
         using T = std::decay_t<decltype(v)>;
-        if constexpr (std::is_same_v<T, std::vector<Options>>) {
+        if constexpr (std::is_same_v<T, std::map<std::string, double>>) {
+          TomlNode table = TomlNode::table();
+          for (const auto& [key, number] : v) table.member(key) = TomlNode::of(number);
+          return table;
+        } else if constexpr (std::is_same_v<T, std::vector<Options>>) {
+          if (spec && spec->type == OptionType::table) return options_tree(v.front(), spec->fields);
           TomlNode list;
           list.kind = TomlNode::Kind::array;
           for (const Options& o : v) {
@@ -250,6 +298,16 @@ const std::vector<Options>& Options::tables(const std::string& key) const {
   return get<std::vector<Options>>(*this, key);
 }
 
+const Options& Options::table(const std::string& key) const {
+  return tables(key).front();
+}
+const Options* Options::maybe_table(const std::string& key) const {
+  return has(key) ? &table(key) : nullptr;
+}
+const std::map<std::string, double>& Options::number_map(const std::string& key) const {
+  return get<std::map<std::string, double>>(*this, key);
+}
+
 std::optional<double> Options::maybe_number(const std::string& key) const {
   return has(key) ? std::optional(number(key)) : std::nullopt;
 }
@@ -278,6 +336,23 @@ TomlNode options_tree(const Options& options, std::span<const OptionSpec> specs)
     if (found != options.values().end()) table.member(spec.key) = value_tree(found->second, &spec);
   }
   return table;
+}
+
+void for_each_file(Options& options, std::span<const OptionSpec> specs,
+                   const std::function<void(const OptionSpec&, std::string&)>& visit) {
+  for (const OptionSpec& spec : specs) {
+    const auto found = options.values().find(spec.key);
+    if (found == options.values().end()) continue;
+    OptionValue value = found->second;
+    if (std::string* text = std::get_if<std::string>(&value); text && spec.is_file) {
+      visit(spec, *text);
+    } else if (auto* tables = std::get_if<std::vector<Options>>(&value)) {
+      for (Options& nested : *tables) for_each_file(nested, spec.fields, visit);
+    } else {
+      continue;
+    }
+    options.set(spec.key, std::move(value));
+  }
 }
 
 std::string value_text(const OptionValue& value) {
@@ -330,8 +405,12 @@ std::string to_string(OptionType type) {
       return "list of numbers";
     case OptionType::texts:
       return "list of texts";
+    case OptionType::table:
+      return "table";
     case OptionType::tables:
       return "list of tables";
+    case OptionType::number_map:
+      return "number, or table of names with numbers";
   }
   return "value";
 }

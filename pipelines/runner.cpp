@@ -1,10 +1,12 @@
 #include "pipelines/runner.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <stdexcept>
 #include <set>
 
 #include "data/io/atomic_file.hpp"
@@ -14,6 +16,7 @@
 #include "pipelines/assemble_report.hpp"
 #include "pipelines/exports.hpp"
 #include "pipelines/guarded_sink.hpp"
+#include "pipelines/options.hpp"
 #include "pipelines/report/html.hpp"
 #include "pipelines/run_folder.hpp"
 #include "pipelines/run_log.hpp"
@@ -30,6 +33,11 @@ namespace fs = std::filesystem;
 using data::Diagnostic;
 using data::InputError;
 using data::Severity;
+
+/// A stage that kept what it reached, and failed all the same (StageOutput::failure).
+struct FailedWithOutput : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 class Run {
  public:
@@ -157,6 +165,11 @@ class Run {
     } catch (const InputError& error) {
       result_.outcome = Outcome::input_error;
       result_.errors = error.diagnostics();
+    } catch (const FailedWithOutput& failure) {
+      result_.outcome = Outcome::numerical_failure;
+      result_.errors.push_back({Severity::error, "no-convergence",
+                                failure.what(), std::nullopt,
+                                "what was reached until then is stored, and shown in the report"});
     } catch (const data::ConvergenceFailure& failure) {
       result_.outcome = Outcome::numerical_failure;
       result_.errors.push_back({Severity::error, "no-convergence", failure.what(), std::nullopt, {}});
@@ -252,6 +265,9 @@ class Run {
       const std::lock_guard lock(mutex);
       observer_.stage_progress(record, fraction, what);
     };
+    context.say = [&](const std::string& line) { observer_.message(fmt::format("{}: {}", stage.name, line)); };
+    context.made_from = record.fingerprint;
+    context.beside = record.output.parent_path() / record.output.stem();
     context.progress(0.0, "");
     io::StageFileWriter writer(record.output);
     GuardedSink sink(writer, request_.stop);
@@ -262,11 +278,18 @@ class Run {
       throw std::logic_error(fmt::format("`{}` gives a subject, but left none", stage.spec->name));
     }
     if (!sink.begun()) writer.begin({});
+    const std::optional<std::string> failure = output.failure;
+    if (!output.files.empty()) output.attributes["files"] = fmt::format("{}", fmt::join(output.files, "\n"));
+    if (failure) record.fingerprint["failed"] = *failure;
     writer.finish({std::move(output.tables), std::move(output.attributes), std::move(output.diagnostics),
                    std::move(output.subject), record.fingerprint});
     data_[stage.name] = load_stage(record.output, stage.name);
     record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     record.ended = utc_now();
+    if (failure) {
+      record.findings = data_.at(stage.name).diagnostics;
+      throw FailedWithOutput(*failure);
+    }
     record.status = StageStatus::done;
   }
 
@@ -316,6 +339,10 @@ class Run {
     Fingerprint parts = stage_fingerprint(stage);
     parts["program"] = program_version();
     if (!scene_digest_.empty()) parts["scene"] = scene_digest_;
+    Options options = stage.options;
+    for_each_file(options, stage.spec->options, [&](const OptionSpec& option, std::string& path) {
+      parts[fmt::format("asset.{}", fs::path(path).filename().string())] = fmt::format("{} {}", option.key, digests_.of(path));
+    });
     for (const auto& [port, wires] : stage.inputs) {
       for (std::size_t i = 0; i < wires.size(); ++i)
         parts[fmt::format("input.{}.{}", port, i)] = source_text(wires[i]);

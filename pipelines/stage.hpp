@@ -3,6 +3,7 @@
 /// validation, defaults, `explain`, templates and the manual come. The runner alone reads and writes files.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -22,11 +23,13 @@ namespace brachium::pipelines {
 
 // ---------------------------------------------------------------- options
 
-enum class OptionType { number, integer, boolean, text, numbers, texts, tables };
+/// `table` is one table with the keys of `fields`, `tables` a list of them. `number_map` is a table whose keys the user
+/// chooses (names of regions, of conditions), each with a number; a plain number stands for { "*" = number }.
+enum class OptionType { number, integer, boolean, text, numbers, texts, table, tables, number_map };
 
 class Options;
 using OptionValue = std::variant<double, std::int64_t, bool, std::string, std::vector<double>,
-                                 std::vector<std::string>, std::vector<Options>>;
+                                 std::vector<std::string>, std::vector<Options>, std::map<std::string, double>>;
 
 /// One option of a stage: everything a user may ask about it.
 struct OptionSpec {
@@ -39,7 +42,9 @@ struct OptionSpec {
   std::optional<double> lower, upper;   ///< inclusive range of a number (every entry of numbers)
   bool lower_open = false, upper_open = false;
   std::vector<std::string> allowed;  ///< admissible texts; empty: any
-  std::vector<OptionSpec> fields;    ///< of each table, for OptionType::tables
+  std::vector<OptionSpec> fields{};  ///< of a table, for OptionType::table and tables
+  std::size_t length = 0;            ///< numbers: so many of them (3: a vector); 0: any
+  bool is_file = false;              ///< text: an existing file, relative to the definition; part of the fingerprint
 };
 
 /// Validated options: every key of the specification that is required or has a default is present.
@@ -57,6 +62,9 @@ class Options {
   const std::vector<double>& numbers(const std::string& key) const;
   const std::vector<std::string>& texts(const std::string& key) const;
   const std::vector<Options>& tables(const std::string& key) const;
+  const Options& table(const std::string& key) const;
+  const Options* maybe_table(const std::string& key) const;  ///< null where it is absent
+  const std::map<std::string, double>& number_map(const std::string& key) const;
   std::optional<double> maybe_number(const std::string& key) const;
   std::optional<std::string> maybe_text(const std::string& key) const;
 
@@ -96,6 +104,12 @@ struct StageOutput {
   std::map<std::string, std::string> attributes;
   std::vector<data::Diagnostic> diagnostics;
 
+  /// Why the numbers did not reach their end, where what was reached is worth keeping: the output is stored and shown
+  /// in the report, but the stage counts as failed (exit code 1) and runs again next time.
+  std::optional<std::string> failure;
+  /// Names of further files that the stage wrote beside its output (StageContext::beside).
+  std::vector<std::string> files;
+
   void warn(std::string code, std::string message, std::string help = {});
   void note(std::string code, std::string message);
 };
@@ -110,6 +124,13 @@ struct StageContext {
                                     ///< patterns; in the order of the first signals input
   std::size_t threads = 1;
   std::function<void(double fraction, const std::string& what)> progress;  ///< may be called from any thread
+  std::function<void(const std::string& line)> say;  ///< a line for the log; may be empty
+  /// What the output is made from (fingerprint.hpp); empty where a stage runs in memory.
+  std::map<std::string, std::string> made_from;
+  /// "<run folder>/03-muscle": how names of further files of this stage begin; empty in memory (none are written then).
+  /// They are written atomically and named in StageOutput::files; "<beside>.restart" is a folder of the stage's own for
+  /// what a later run can go on from.
+  std::filesystem::path beside;
 
   const StageData& input(const std::string& port) const;        ///< the one entry; std::logic_error if absent
   const StageData* maybe_input(const std::string& port) const;  ///< null if not wired
@@ -162,6 +183,7 @@ void add_session_stages(Catalogue& catalogue);   ///< twin.session
 void add_emg_stages(Catalogue& catalogue);       ///< emg.quality, emg.envelope, emg.onset, emg.activation
 void add_limb_stages(Catalogue& catalogue);      ///< limb.kinematics, limb.inverse_dynamics, limb.dynamometer
 void add_hill_stages(Catalogue& catalogue);      ///< hill.moment
+void add_fem_stages(Catalogue& catalogue);       ///< fem.solve
 void add_optimise_stages(Catalogue& catalogue);  ///< optimise.calibrate, optimise.cross_validate
 void add_compare_stages(Catalogue& catalogue);   ///< pipelines.compare
 

@@ -17,6 +17,7 @@ struct TemplateStage {
 struct Template {
   std::string name, summary;
   bool scene = false;
+  bool session = true;
   std::vector<TemplateStage> stages;
 };
 
@@ -25,12 +26,14 @@ const std::vector<Template>& templates() {
       {"emg",
        "From raw EMG to normalised excitations, with the quality of every channel.",
        false,
+       true,
        {{"quality", "emg.quality", ""},
         {"excitation", "emg.envelope", "input = { quality = \"quality\" }\n"},
         {"onset", "emg.onset", ""}}},
       {"calibration",
        "From raw EMG and motion to a calibrated joint moment, its error on trials that the calibration never "
        "saw, and a subject to reuse.",
+       true,
        true,
        {{"quality", "emg.quality", ""},
         {"excitation", "emg.envelope", "input = { quality = \"quality\" }\n"},
@@ -42,7 +45,35 @@ const std::vector<Template>& templates() {
          "input = { excitation = \"excitation\", kinematics = \"kinematics\", moment = \"moment\" }\n"},
         {"activation", "emg.activation", "input = { excitation = \"excitation\", subject = \"subject\" }\n"},
         {"fim", "hill.moment",
-         "input = { activation = \"activation\", kinematics = \"kinematics\", subject = \"subject\" }\n"}}}};
+         "input = { activation = \"activation\", kinematics = \"kinematics\", subject = \"subject\" }\n"}}},
+      {"continuum",
+       "A continuum muscle with tendons that is stretched, then activated: its force, and its shape to look at.",
+       false,
+       false,
+       {{"muscle", "fem.solve", R"toml(mesh = { spindle = { belly_m = 0.12, belly_radius_m = 0.016, tendon_radius_m = 0.005, origin_tendon_m = 0.03, insertion_tendon_m = 0.03, transition_m = 0.02 } }
+# mesh = { file = "muscle.msh", length_unit = "mm", elevate = true }  # your own: Gmsh, VTU, VTK or FEBio
+material = [
+  { set = "sprenger", incompressible = true },   # of all regions; `regions = ["muscle"]` for one of several
+]
+fibre = [
+  { kind = "harmonic", origin = "origin", insertion = "insertion" },
+]
+blend = [
+  { of = "muscle", field = "gamma_M" },          # 1 muscle, 0 tendon; a field of the mesh, or `value`
+]
+boundary = [
+  { name = "held", surface = "origin", kind = "fixed" },
+  { name = "pull", surface = "insertion", kind = "displacement", x_m = 0.0, y_m = 0.0, z_m = 0.012 },
+]
+phase = [
+  { name = "stretch", amplitude = { pull = 1.0 }, steps = 4 },
+  { name = "activate", activation = 0.5, steps = 4 },
+]
+output = [
+  { name = "insertion", kind = "reaction", surface = "insertion" },
+  { name = "stretch", kind = "fibre_stretch", regions = ["muscle"] },
+]
+)toml"}}}};
   return all;
 }
 
@@ -80,16 +111,15 @@ std::string render_template(const std::string& name, const std::string& title, c
       "relative to this file.\n"
       "# `brachium check FILE` says what is missing, `brachium explain STAGE` tells more of a stage.\n\n",
       chosen->summary);
-  out += fmt::format(
-      "[pipeline]\ntitle = {}\nsession = \"session.h5\"  # or a session description, session.toml\n",
-      node_text(io::TomlNode::of(title)));
+  out += fmt::format("[pipeline]\ntitle = {}\n", node_text(io::TomlNode::of(title)));
+  if (chosen->session) out += "session = \"session.h5\"  # or a session description, session.toml\n";
   if (chosen->scene) out += "scene = \"scene.toml\"\n";
   out += "# threads = 0  # 0: all cores\n";
   for (const TemplateStage& stage : chosen->stages) {
     const StageSpec* spec = catalogue.find(stage.run);
     if (!spec) throw std::logic_error(fmt::format("template `{}` needs the stage `{}`", name, stage.run));
-    out += fmt::format("\n# {}\n[[stage]]\nname = \"{}\"\nrun = \"{}\"\n# trials = [\"*\"]\n", spec->summary,
-                       stage.name, stage.run);
+    out += fmt::format("\n# {}\n[[stage]]\nname = \"{}\"\nrun = \"{}\"\n{}", spec->summary, stage.name, stage.run,
+                       chosen->session ? "# trials = [\"*\"]\n" : "");
     out += stage.lines + comment_lines(*spec, stage.lines);
   }
   return out +

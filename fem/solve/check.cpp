@@ -7,6 +7,7 @@
 #include <set>
 
 #include "fem/element/quadrature.hpp"
+#include "fem/mesh/quality.hpp"
 #include "fem/solve/constraints.hpp"
 #include "fem/solve/problem_check.hpp"
 #include "fem/solve/rigid_support.hpp"

@@ -7,7 +7,6 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
-#include <numeric>
 
 namespace brachium::fem {
 namespace {
@@ -16,15 +15,6 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double null_tolerance = 1e-12;
-
-int root(std::vector<int>& parent, int n) {
-  while (parent[static_cast<std::size_t>(n)] != n) {
-    int& up = parent[static_cast<std::size_t>(n)];
-    up = parent[static_cast<std::size_t>(up)];
-    n = up;
-  }
-  return n;
-}
 
 double clean(double v) {
   return std::abs(v) < 1e-9 ? 0.0 : v;
@@ -56,25 +46,6 @@ std::vector<Eigen::Vector3d> readable_basis(const Eigen::Matrix3Xd& orthonormal)
 }
 
 }  // namespace
-
-std::vector<int> connected_parts(const data::Mesh& mesh) {
-  std::vector<int> parent(static_cast<std::size_t>(mesh.point_count()));
-  std::iota(parent.begin(), parent.end(), 0);
-  for (int c = 0; c < mesh.cell_count(); ++c) {
-    for (Eigen::Index a = 1; a < mesh.cells.rows(); ++a) {
-      const int one = root(parent, mesh.cells(0, c)), other = root(parent, mesh.cells(a, c));
-      if (one != other) parent[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
-    }
-  }
-  std::vector<int> part_of_root(parent.size(), -1), part(static_cast<std::size_t>(mesh.cell_count()));
-  int count = 0;
-  for (int c = 0; c < mesh.cell_count(); ++c) {
-    int& p = part_of_root[static_cast<std::size_t>(root(parent, mesh.cells(0, c)))];
-    if (p < 0) p = count++;
-    part[static_cast<std::size_t>(c)] = p;
-  }
-  return part;
-}
 
 std::vector<std::string> free_motions(const data::Mesh& mesh, const std::vector<int>& nodes,
                                       const std::vector<Hold>& holds) {

@@ -12,9 +12,6 @@
 
 namespace brachium::fem {
 
-/// Cells that hang together by shared points: the part of each cell, counted from 0.
-std::vector<int> connected_parts(const data::Mesh& mesh);
-
 /// "translation along x", "rotation about the axis along (0.6, 0.8, 0) through (0.01, 0, 0) m"; empty when
 /// held. `nodes` are the part's points, `holds` those on them.
 std::vector<std::string> free_motions(const data::Mesh& mesh, const std::vector<int>& nodes,

@@ -8,6 +8,7 @@ Catalogue built_in_catalogue() {
   add_emg_stages(catalogue);
   add_limb_stages(catalogue);
   add_hill_stages(catalogue);
+  add_fem_stages(catalogue);
   add_optimise_stages(catalogue);
   add_compare_stages(catalogue);
   return catalogue;

@@ -2,16 +2,20 @@
 #   cmake -DPROGRAM=... -DSESSION=... -DSCENE=... -DFOLDER=... -P check_templates.cmake
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
-foreach(template emg calibration)
+foreach(template emg calibration continuum)
   execute_process(COMMAND ${PROGRAM} new ${template} mine-${template} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "new ${template} ended with exit code ${code}")
   endif()
   set(scene "")
+  set(session --set pipeline.session=${SESSION})
+  if(template STREQUAL "continuum")
+    set(session "")
+  endif()
   if(template STREQUAL "calibration")
     set(scene --set pipeline.scene=${SCENE})
   endif()
-  execute_process(COMMAND ${PROGRAM} check mine-${template}.toml --set pipeline.session=${SESSION} ${scene}
+  execute_process(COMMAND ${PROGRAM} check mine-${template}.toml ${session} ${scene}
     WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "check of the template ${template} ended with exit code ${code}")

@@ -1,0 +1,47 @@
+#pragma once
+/// Wanted quantities of fem.solve: one row per accepted state.
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "data/model/table.hpp"
+#include "fem/assembly/discretisation.hpp"
+#include "fem/quantities/quantities.hpp"
+#include "fem/solve/solve.hpp"
+#include "pipelines/stages/fem_problem.hpp"
+
+namespace brachium::pipelines {
+
+/// Mistakes of the tables `output`: names given twice, missing or unused keys, surfaces and regions that are
+/// not there.
+void check_outputs(const Options& options, const data::Mesh& mesh, std::vector<data::Diagnostic>& mistakes);
+
+/// Reads the wanted quantities off accepted states.
+class FemQuantities {
+ public:
+  FemQuantities(const Options& options, const fem::Problem& problem,
+                const fem::Discretisation& discretisation);
+
+  /// Throws InputError for points and planes that do not meet the body: what only the discretised body can
+  /// tell.
+  void check_places() const;
+
+  /// A table with one row: state, step, phase, phase_time, activations, amplitudes, energy, volume, wanted
+  /// quantities.
+  data::Table row(int state, const fem::AcceptedState& accepted, const fem::PointFields& fields) const;
+
+ private:
+  const Options& options_;
+  const fem::Problem& problem_;
+  const fem::Discretisation& discretisation_;
+  Eigen::VectorXd weights_;          ///< reference volume of each quadrature point [m3]
+  std::vector<std::string> moved_;   ///< conditions that a phase moves
+  std::vector<std::size_t> active_;  ///< regions with an active law
+};
+
+/// Rows of `from` appended to `to`, which takes its columns where it has none. Columns must agree
+/// (std::logic_error).
+void append_rows(data::Table& to, const data::Table& from);
+
+}  // namespace brachium::pipelines
