@@ -1,4 +1,0 @@
-#pragma once
-/// Moved to its own chapter.
-
-#include "fem/quantities/quantities.hpp"
