@@ -36,10 +36,10 @@ const std::vector<ErrorCode>& error_codes() {
        "again."},
       {"bad-curve", "A muscle curve was given parameters for which it does not exist."},
       {"bad-fibre",
-       "A fibre direction cannot be used: it is zero or not of unit length, neighbours cancel, or the function "
+       "A fibre direction cannot be used: it is zero or not of unit length, neighbours cancel, or the "
+       "function "
        "that fibres follow is flat there. The message names the place."},
-      {"bad-fraction",
-       "A fraction of tissue lies outside [0, 1]; the message names the point or cell."},
+      {"bad-fraction", "A fraction of tissue lies outside [0, 1]; the message names the point or cell."},
       {"bad-geometry",
        "The table or polynomial of a muscle path is not usable: too few knots, angles that do not rise, or "
        "missing coefficients."},
@@ -87,6 +87,14 @@ const std::vector<ErrorCode>& error_codes() {
        "A channel does not vary at all: a broken lead, a muted recorder or a wrong column."},
       {"constant-signal",
        "A signal does not vary at all: a broken lead, a muted recorder or a wrong column."},
+      {"contact-grid",
+       "Spacing, margin or smoothing of the grid of distances to a rigid body is not usable; the message "
+       "gives the range."},
+      {"contact-option",
+       "Penalty or smoothing width of a contact is not usable; the message gives the range."},
+      {"contact-shape",
+       "A size or direction of a rigid body's shape is not usable: sizes are above 0, directions have a "
+       "length."},
       {"contradictory-conditions",
        "Two boundary conditions hold the same points in the same direction and ask different "
        "displacements of them. Free the component in one, or make both move alike."},
@@ -131,6 +139,9 @@ const std::vector<ErrorCode>& error_codes() {
        "dynamics."},
       {"excluded-channel", "A channel failed the quality thresholds and was left out, as the options say."},
       {"extra-field", "A row of a file has more fields than its header."},
+      {"fibre-field-size",
+       "A field of fibres or of tissue shares was made for another mesh or element than the one that is "
+       "solved with."},
       {"fibre-not-unit", "A fibre direction is no unit vector, or is missing."},
       {"field-size",
        "A field was given with another number of values than the mesh has points or degrees of freedom."},
@@ -216,8 +227,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"missing-material",
        "A region of the mesh has no material. Every region needs one; an entry without `regions` serves "
        "all that no other entry names."},
-      {"missing-mesh-field",
-       "The mesh brings no field of that name along; the message gives the nearest."},
+      {"missing-mesh-field", "The mesh brings no field of that name along; the message gives the nearest."},
       {"missing-moment", "The trial has no measured joint moment to compare with or to calibrate against."},
       {"missing-muscle", "The scene or subject has no muscle of that name."},
       {"missing-option", "A stage has an option without a default; give it a value."},
@@ -286,8 +296,7 @@ const std::vector<ErrorCode>& error_codes() {
        "inside."},
       {"parameter-range",
        "A parameter of a material lies outside its range; the message gives law, parameter and range."},
-      {"passive-material",
-       "A phase activates regions of which none has a law with an active part."},
+      {"passive-material", "A phase activates regions of which none has a law with an active part."},
       {"penalty-chosen",
        "The bulk modulus around which the augmented Lagrange iteration makes a body exactly "
        "incompressible; the result does not depend on it."},
@@ -313,8 +322,7 @@ const std::vector<ErrorCode>& error_codes() {
        "There is no trial at rest whose envelope could be taken off. Name one of kind rest or passive, or "
        "leave that step out."},
       {"restart-mismatch", "A saved state belongs to another mesh, formulation or programme."},
-      {"restarted",
-       "A solve went on from the last state that an earlier run kept."},
+      {"restarted", "A solve went on from the last state that an earlier run kept."},
       {"row-count-mismatch", "A file states another number of rows than it has."},
       {"rule-cycle", "Muscles are driven by rules that refer to each other in a loop."},
       {"run-in-progress",
@@ -344,6 +352,11 @@ const std::vector<ErrorCode>& error_codes() {
       {"trained-and-judged",
        "A trial was used for both training and judgement; its error is not that of an unseen trial."},
       {"trial-too-short", "A trial is shorter than the filter or window needs."},
+      {"triangle-mesh-degenerate", "A triangle of a surface has no area. Remove it, or merge its points."},
+      {"triangle-mesh-index", "A triangle of a surface names a point that is not there."},
+      {"triangle-mesh-inverted",
+       "Neighbouring triangles of a surface do not agree on which side is outside, or all point inwards."},
+      {"triangle-mesh-open", "A surface of triangles that must enclose a body has a gap, or no triangles."},
       {"twice-given",
        "One thing was given twice: a material or a fibre rule for one region, or a name of an output."},
       {"undriven-muscle", "A muscle has no channel and no rule; it is passive."},
@@ -359,6 +372,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"unknown-file", "A file is none of the kinds that the program writes or reads."},
       {"unknown-filter", "There is no such filter."},
       {"unknown-format", "There is no such file format."},
+      {"unknown-formulation", "There is no finite element of that name; the message gives the nearest."},
       {"unknown-input", "A stage has no input of that name."},
       {"unknown-key", "A key is not known here, perhaps misspelt."},
       {"unknown-muscle", "A name is not that of a muscle of the scene."},
@@ -406,6 +420,7 @@ const std::vector<ErrorCode>& error_codes() {
        "An option was given that the chosen kind or law has no use for; the ones it takes are listed."},
       {"unused-points",
        "A mesh has points that belong to no cell; they would have no stiffness. Remove them."},
+      {"volumetric-law", "An element with continuous pressures takes the quadratic volumetric law only."},
       {"weak-combination", "The data determine only a combination of parameters, not each of them."},
       {"write-failed",
        "A file could not be written: a full disk, a limit or missing permission. What was there before is "
@@ -414,8 +429,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"wrong-coordinate", "A signal belongs to another joint coordinate than is needed."},
       {"wrong-encoding", "A text file is not UTF-8."},
       {"wrong-format", "A file is of another format than expected."},
-      {"wrong-length",
-       "A list has another number of entries than it must have, such as 3 for a vector."},
+      {"wrong-length", "A list has another number of entries than it must have, such as 3 for a vector."},
       {"wrong-port", "An input takes another kind of output than the stage that is wired to it gives."},
       {"wrong-quantity", "A signal measures another quantity than the stage needs."},
       {"wrong-size", "A list has another length than needed."},
@@ -425,6 +439,7 @@ const std::vector<ErrorCode>& error_codes() {
        "has."},
       {"wrong-version", "A file was written by another version of the program with another layout."},
       {"zero-direction", "A direction was given as a vector without length."},
+      {"zero-fibre", "A fibre direction at a quadrature point is not a unit vector."},
       {"zero-variance-moment",
        "The measured moment does not vary, so that nothing can be calibrated against it."},
   };

@@ -120,7 +120,7 @@ TEST(ErrorCodes, EveryCodeInTheSourcesIsExplained) {
   const std::regex trial_name("(ramp|hold|sweep|curl|random|mvc)-[0-9]+");
   std::set<std::string> unexplained;
   std::size_t found = 0;
-  for (const char* folder : {"data", "emg", "hill", "optimise", "pipelines"}) {
+  for (const char* folder : {"data", "emg", "fem", "hill", "optimise", "pipelines"}) {
     for (const auto& entry : fs::recursive_directory_iterator(brachium::tests::source_dir() / folder)) {
       const std::string path = entry.path().generic_string();
       // The report's names are those of HTML and style sheets.
