@@ -85,6 +85,7 @@ void add_optimise_calibrate(Catalogue& catalogue) {
 void add_optimise_stages(Catalogue& catalogue) {
   add_optimise_calibrate(catalogue);
   add_optimise_cross_validate(catalogue);
+  add_optimise_scenario(catalogue);
 }
 
 }  // namespace brachium::pipelines

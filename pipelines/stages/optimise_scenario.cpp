@@ -1,0 +1,416 @@
+/// optimise.scenario: the equivalent static system of a joint with given muscle forces, and questions asked
+/// of it.
+
+#include "optimise/scenario.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "fem/surrogate/surrogate_model.hpp"
+#include "fem/surrogate/tensor.hpp"
+#include "optimise/scenario_signs.hpp"
+#include "pipelines/stages/common.hpp"
+#include "pipelines/stages/optimise_common.hpp"
+#include "pipelines/stages/optimise_scenario.hpp"
+
+namespace brachium::pipelines {
+namespace {
+
+constexpr double deg = std::numbers::pi / 180.0;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+using optimise::thesis::Action;
+
+// ---------------------------------------------------------------- the system
+
+/// Σ c_k theta^k in mm, theta in degrees, as metres over radians.
+data::CurveValue lever(const std::vector<double>& coefficients, double q) {
+  const double t = q / deg;
+  data::CurveValue v;
+  for (std::size_t k = coefficients.size(); k-- > 0;) {
+    v.slope = v.slope * t + v.value;
+    v.value = v.value * t + coefficients[k];
+  }
+  return {1e-3 * v.value, 1e-3 * v.slope / deg};
+}
+
+fem::SurrogateMuscle muscle_of(const Options& o, const std::string& curve) {
+  const std::string& name = o.text("name");
+  const std::vector<double>&angle = o.numbers("angle_deg"), &activation = o.numbers("activation"),
+        &force = o.numbers("force_N");
+  if (force.size() != angle.size() * activation.size()) {
+    throw data::InputError("wrong-size",
+                           fmt::format("muscle `{}` has {} forces for {} angles and {} activations", name,
+                                       force.size(), angle.size(), activation.size()),
+                           "give the forces at all angles for the first activation, then for the next");
+  }
+  fem::SampleSet set{{"force_n"}, {}};
+  for (std::size_t j = 0; j < activation.size(); ++j) {
+    for (std::size_t i = 0; i < angle.size(); ++i)
+      set.samples.push_back(
+          {{angle[i] * deg, activation[j]}, Eigen::VectorXd::Constant(1, force[j * angle.size() + i])});
+  }
+  fem::TensorOptions options;
+  options.theta = curve == "monotone" ? fem::ThetaCurve::monotone
+                  : curve == "linear" ? fem::ThetaCurve::linear
+                                      : fem::ThetaCurve::cubic;
+  options.alpha = activation.size() > 2 ? fem::AlphaCurve::cubic : fem::AlphaCurve::linear;
+  const Action action = o.text("action") == "flexor" ? Action::flexor : Action::extensor;
+  const std::vector<double> coefficients = o.numbers("lever_arm_mm");
+  return {name, std::make_shared<fem::Surrogate>(fem::tensor_spline(fem::as_grid(set), options)), "force_n",
+          fem::ArmOfAngle{[action, coefficients](double q) {
+            return optimise::thesis::moment_arm(action, lever(coefficients, q));
+          }}};
+}
+
+fem::SurrogateModel model_of(const Options& options) {
+  std::vector<fem::SurrogateMuscle> muscles;
+  for (const Options& o : options.tables("muscle"))
+    muscles.push_back(muscle_of(o, options.text("force_curve")));
+  return fem::SurrogateModel("angle", std::move(muscles));
+}
+
+optimise::StaticSystem system_of(const Options& options, const fem::SurrogateModel& model) {
+  optimise::StaticSystem system;
+  system.model = &model;
+  if (const auto arm = options.maybe_number("load_arm_mm")) {
+    const double metres = 1e-3 * *arm;
+    system.load_arm = [metres](double q) {
+      return optimise::thesis::load_arm({metres * std::sin(q), metres * std::cos(q)});
+    };
+  }
+  const data::Domain range = model.angles();
+  const auto lower = options.maybe_number("lower_deg"), upper = options.maybe_number("upper_deg");
+  system.lower_rad = lower ? *lower * deg : range.lower;
+  system.upper_rad = upper ? *upper * deg : range.upper;
+  return system;
+}
+
+Eigen::VectorXd activations(const Options& o, std::size_t muscles, const std::string& what) {
+  const std::vector<double>& a = o.numbers("activation");
+  if (a.size() != muscles)
+    throw data::InputError("wrong-size",
+                           fmt::format("{} has {} activations for {} muscles", what, a.size(), muscles),
+                           "give one for each muscle, in their order");
+  return Eigen::Map<const Eigen::VectorXd>(a.data(), static_cast<Eigen::Index>(a.size()));
+}
+
+std::string case_name(const Options& o, std::size_t number) {
+  return o.text("name").empty() ? fmt::format("{}", number + 1) : o.text("name");
+}
+
+// A series of knots, linear in between.
+double at_time(const std::vector<double>& time, const std::vector<double>& values, double t) {
+  const auto after = std::upper_bound(time.begin(), time.end(), t);
+  if (after == time.begin()) return values.front();
+  if (after == time.end()) return values.back();
+  const auto i = static_cast<std::size_t>(after - time.begin());
+  const double s = (t - time[i - 1]) / (time[i] - time[i - 1]);
+  return values[i - 1] + s * (values[i] - values[i - 1]);
+}
+
+// ---------------------------------------------------------------- tables
+
+struct Study {
+  const Options& options;
+  const fem::SurrogateModel& model;
+  optimise::StaticSystem system;
+  optimise::ScenarioOptions scenario;
+  std::vector<std::string> muscles;
+};
+
+data::Table forces(const Study& s) {
+  TableBuilder table("forces and lever arms");
+  table.text("muscle")
+      .number("activation", "1")
+      .number("angle_deg", "deg")
+      .number("force_N", "N")
+      .number("moment_arm_mm", "mm")
+      .number("moment_N_m", "N m");
+  for (std::size_t k = 0; k < s.muscles.size(); ++k) {
+    for (const double a : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      for (const double q : fem::equidistant(s.system.lower_rad, s.system.upper_rad, 71)) {
+        const auto m = optimise::moment_at(
+            s.system, q, Eigen::VectorXd::Constant(static_cast<Eigen::Index>(s.muscles.size()), a), 0.0);
+        const auto i = static_cast<Eigen::Index>(k);
+        table.row({s.muscles[k], a, q / deg, m.force_N(i), 1e3 * m.moment_arm_m(i),
+                   m.force_N(i) * m.moment_arm_m(i)});
+      }
+    }
+  }
+  return table.take();
+}
+
+struct Found {
+  std::size_t equilibria = 0, without = 0, unstable = 0;
+};
+
+Found equilibria(const Study& s, StageOutput& out) {
+  TableBuilder table("equilibria"), curves("moment against angle"), iterations("convergence");
+  table.text("case").number("load_N", "N");
+  for (const std::string& m : s.muscles) table.number("activation_" + m, "1");
+  table.text("outcome")
+      .number("angle_deg", "deg")
+      .number("stiffness_N_m_per_rad", "N m/rad")
+      .number("dangle_dload_deg_per_N", "deg/N");
+  for (const std::string& m : s.muscles) table.number("dangle_dactivation_" + m + "_deg", "deg");
+  table.number("moment_N_m", "N m").number("angle_error_deg", "deg");
+  curves.text("case").number("angle_deg", "deg").number("moment_N_m", "N m");
+  iterations.text("case")
+      .number("start_deg", "deg")
+      .number("iteration", "1")
+      .number("angle_deg", "deg")
+      .number("moment_N_m", "N m")
+      .number("step_deg", "deg");
+  Found found;
+  const std::vector<Options>& cases = s.options.tables("equilibrium");
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    const std::string name = case_name(cases[c], c);
+    const Eigen::VectorXd a = activations(cases[c], s.muscles.size(), fmt::format("equilibrium `{}`", name));
+    const double load = cases[c].number("load_N");
+    const optimise::Equilibria all = optimise::equilibria(s.system, a, load, s.scenario);
+    const auto row = [&](const std::string& outcome, double angle, double stiffness, double by_load,
+                         const Eigen::VectorXd& by_activation, double moment, double error) {
+      std::vector<std::variant<double, std::string>> values{name, load};
+      for (const double x : a) values.emplace_back(x);
+      values.insert(values.end(), {outcome, angle, stiffness, by_load});
+      for (const double x : by_activation) values.emplace_back(x);
+      values.insert(values.end(), {moment, error});
+      table.row(std::move(values));
+    };
+    for (const auto& e : all.all)
+      row(e.stable ? "stable" : "unstable", e.angle_rad / deg, e.stiffness_N_m_per_rad,
+          e.dangle_dload_rad_per_N / deg, e.dangle_dactivation_rad / deg, e.moment_N_m,
+          e.angle_error_rad / deg);
+    if (all.all.empty())
+      row("none in range", all.nearest_rad / deg, none, none, Eigen::VectorXd::Constant(a.size(), none),
+          all.nearest_moment_N_m, none);
+    found.equilibria += all.all.size();
+    found.without += all.all.empty();
+    for (const auto& e : all.all) found.unstable += !e.stable;
+    for (const double q : fem::equidistant(s.system.lower_rad, s.system.upper_rad, 141))
+      curves.row({name, q / deg, optimise::moment_at(s.system, q, a, load).moment_N_m});
+    for (const double start : s.options.numbers("start_deg")) {
+      for (const auto& r : optimise::equilibrium_from(s.system, a, load, start * deg, s.scenario).history) {
+        iterations.row(
+            {name, start, static_cast<double>(r.iteration), r.at / deg, r.moment_N_m, r.step / deg});
+      }
+    }
+  }
+  out.tables["equilibria"] = table.take();
+  out.tables["moments"] = curves.take();
+  out.tables["convergence"] = iterations.take();
+  return found;
+}
+
+std::size_t muscle_index(const Study& s, const std::string& name) {
+  const auto at = std::find(s.muscles.begin(), s.muscles.end(), name);
+  if (at == s.muscles.end())
+    throw data::InputError("unknown-value", fmt::format("no muscle is called `{}`", name),
+                           data::suggest(name, s.muscles));
+  return static_cast<std::size_t>(at - s.muscles.begin());
+}
+
+std::size_t positions(const Study& s, StageOutput& out) {
+  TableBuilder table("activations that hold an angle");
+  table.text("case")
+      .number("angle_deg", "deg")
+      .number("load_N", "N")
+      .text("sought")
+      .text("outcome")
+      .number("activation", "1")
+      .number("dactivation_dangle_per_deg", "1/deg")
+      .number("dactivation_dload_per_N", "1/N")
+      .number("nearest_activation", "1")
+      .number("remaining_moment_N_m", "N m")
+      .number("remaining_load_N", "N")
+      .number("iterations", "1");
+  std::size_t without = 0;
+  const std::vector<Options>& cases = s.options.tables("position");
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    const Options& o = cases[c];
+    const std::string name = case_name(o, c);
+    const auto held = optimise::held_angle(
+        s.system, o.number("angle_deg") * deg, muscle_index(s, o.text("sought")),
+        activations(o, s.muscles.size(), fmt::format("position `{}`", name)), o.number("load_N"), s.scenario);
+    without += !held.activation;
+    table.row({name, o.number("angle_deg"), o.number("load_N"), o.text("sought"),
+               held.activation ? "held" : "none in range", held.activation.value_or(none),
+               held.activation ? held.dactivation_dangle * deg : none,
+               held.activation ? held.dactivation_dload : none, held.nearest, held.remaining_moment_N_m,
+               held.remaining_load_N.value_or(none), static_cast<double>(held.history.size())});
+  }
+  out.tables["positions"] = table.take();
+  return without;
+}
+
+void histories(const Study& s, StageOutput& out) {
+  TableBuilder table("histories"), events("events");
+  table.text("case")
+      .number("time_s", "s")
+      .number("load_N", "N")
+      .number("angle_deg", "deg")
+      .text("kind")
+      .number("moment_N_m", "N m")
+      .number("dangle_dload_deg_per_N", "deg/N")
+      .number("evaluations", "1");
+  events.text("case").text("event");
+  const std::vector<Options>& cases = s.options.tables("history");
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    const Options& o = cases[c];
+    const std::string name = case_name(o, c);
+    const std::vector<double>&knots = o.numbers("time_s"), &loads = o.numbers("load_N"),
+          &a = o.numbers("activation");
+    const std::size_t n_m = s.muscles.size();
+    if (knots.size() < 2 || !std::is_sorted(knots.begin(), knots.end(), std::less_equal<>()) ||
+        loads.size() != knots.size() || (a.size() != n_m && a.size() != n_m * knots.size())) {
+      throw data::InputError(
+          "wrong-size",
+          fmt::format("history `{}` has {} times, {} loads and {} activations for {} muscles", name,
+                      knots.size(), loads.size(), a.size(), n_m),
+          "times increase, with a load for each; activations are one for each muscle, or for each muscle at "
+          "every time, times first");
+    }
+    const std::vector<double> time =
+        fem::equidistant(knots.front(), knots.back(), static_cast<std::size_t>(o.integer("frames")));
+    const auto n = static_cast<Eigen::Index>(time.size());
+    Eigen::VectorXd load(n);
+    Eigen::MatrixXd activation(static_cast<Eigen::Index>(n_m), n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double t = time[static_cast<std::size_t>(i)];
+      load(i) = at_time(knots, loads, t);
+      for (std::size_t k = 0; k < n_m; ++k) {
+        const bool constant = a.size() == n_m;
+        const std::vector<double> series =
+            constant ? std::vector<double>{a[k]}
+                     : std::vector<double>(a.begin() + static_cast<std::ptrdiff_t>(k * knots.size()),
+                                           a.begin() + static_cast<std::ptrdiff_t>((k + 1) * knots.size()));
+        activation(static_cast<Eigen::Index>(k), i) = constant ? a[k] : at_time(knots, series, t);
+      }
+    }
+    const optimise::AngleHistory history =
+        optimise::follow(s.system, time, activation, load, o.number("start_deg") * deg, s.scenario);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const optimise::Frame& f = history.frames[static_cast<std::size_t>(i)];
+      table.row({name, f.time_s, load(i), f.angle_rad / deg, optimise::frame_kind_name(f.kind), f.moment_N_m,
+                 f.dangle_dload_rad_per_N / deg, static_cast<double>(f.iterations)});
+    }
+    for (const std::string& e : history.events) events.row({name, e});
+  }
+  out.tables["histories"] = table.take();
+  out.tables["events"] = events.take();
+}
+
+void run(const StageContext& context, StageOutput& out) {
+  const fem::SurrogateModel model = model_of(*context.options);
+  Study study{*context.options, model, system_of(*context.options, model), {}, model.muscles()};
+  study.scenario.relative_tolerance = context.options->number("relative_tolerance");
+  out.tables["forces"] = forces(study);
+  const Found found = equilibria(study, out);
+  const std::size_t not_held = positions(study, out);
+  histories(study, out);
+  out.attributes["rung"] = model.traits().rung;
+  out.attributes["signs"] = "flexion positive; a load above 0 extends";
+  out.attributes["verdict"] =
+      fmt::format("{} equilibria ({} unstable); {} loads and {} angles without one in range",
+                  found.equilibria, found.unstable, found.without, not_held);
+  out.attributes["verdict_tone"] = "plain";
+}
+
+// ---------------------------------------------------------------- specification
+
+OptionSpec numbers_of(std::string key, std::string unit, std::string doc, Bounds bounds = {}) {
+  OptionSpec spec = number_option(std::move(key), std::move(unit), 0.0, bounds, std::move(doc));
+  spec.type = OptionType::numbers;
+  spec.fallback.reset();
+  return spec;
+}
+
+OptionSpec tables_of(std::string key, std::vector<OptionSpec> fields, std::string doc) {
+  OptionSpec spec;
+  spec.key = std::move(key);
+  spec.type = OptionType::tables;
+  spec.doc = std::move(doc);
+  spec.fields = std::move(fields);
+  spec.fallback = std::vector<Options>{};
+  return spec;
+}
+
+OptionSpec required(OptionSpec spec) {
+  spec.fallback.reset();
+  return spec;
+}
+
+}  // namespace
+
+void add_optimise_scenario(Catalogue& catalogue) {
+  StageSpec spec;
+  spec.name = "optimise.scenario";
+  spec.summary =
+      "static equilibrium of a joint with given muscle forces: angles, activations, load histories";
+  spec.doc =
+      "The equivalent static system of a joint: muscle forces over angle and activation are given as a "
+      "table, lever arms as polynomials of the angle, and a load acts on the forearm. "
+      "Three questions are asked of it. Activation-driven (`equilibrium`): all angles at which given "
+      "activations hold a load, with their stability. Position-driven (`position`): the activation "
+      "of one muscle that holds an angle. Force-driven (`history`): where a load history takes the joint, "
+      "along stable branches, with jumps where one ends. That there is no solution in range is a "
+      "result, with the nearest there is. Derivatives come from the implicit function theorem; iterations "
+      "stop where the moment is below `relative_tolerance` times the sum of all moments' sizes.\n"
+      "Flexion is positive in all results; a load above 0 extends. Source of the system and its scenarios: "
+      "Valentin 2019, doi:10.18419/opus-10504, ch. 7.";
+  spec.output = PortType::tables;
+  OptionSpec activation = numbers_of("activation", "", "of every muscle, in their order", between(0, 1));
+  OptionSpec of_table = numbers_of("activation", "", "activations of the force table", between(0, 1));
+  of_table.fallback = std::vector<double>{0.0, 1.0};
+  OptionSpec starts = numbers_of("start_deg", "deg",
+                                 "starts of Newton's method whose iterations are shown (the published ones)");
+  starts.fallback = std::vector<double>{80.0, 40.0, 120.0};
+  const OptionSpec name = text_option("name", "", "name of the case; its number where absent");
+  const OptionSpec load = number_option("load_N", "N", 0.0, {}, "load on the forearm, above 0 extends");
+  spec.options = {
+      required(tables_of(
+          "muscle",
+          {required(text_option("name", "", "name of the muscle")),
+           required(
+               choice_option("action", "flexor", {"flexor", "extensor"}, "which way it turns the joint")),
+           numbers_of("angle_deg", "deg", "angles of the force table, at least 2"), of_table,
+           numbers_of("force_N", "N", "tensions: at all angles for the first activation, then for the next"),
+           numbers_of("lever_arm_mm", "mm",
+                      "coefficients of the lever arm, l = c0 + c1 theta + c2 theta^2 + ..., theta in "
+                      "degrees; above 0")},
+          "the muscles")),
+      choice_option("force_curve", "monotone", {"monotone", "cubic", "linear"},
+                    "interpolation over the angle; over the activation linear, cubic from 3 activations on"),
+      optional_number(
+          "load_arm_mm", "mm", above(0),
+          "distance of the load from the joint: its lever arm is this times the sine of the angle"),
+      optional_number("lower_deg", "deg", {}, "range of angles; absent: that of the tables"),
+      optional_number("upper_deg", "deg", {}, "range of angles; absent: that of the tables"),
+      tables_of("equilibrium", {name, activation, load}, "activation-driven cases"),
+      starts,
+      tables_of("position",
+                {name, required(number_option("angle_deg", "deg", 0.0, {}, "angle to be held")),
+                 required(text_option("sought", "", "muscle whose activation is sought")), activation, load},
+                "position-driven cases"),
+      tables_of("history",
+                {name, numbers_of("time_s", "s", "times of the load's knots"),
+                 numbers_of("load_N", "N", "load at these times, linear in between"),
+                 numbers_of("activation", "", "one for each muscle, or for each muscle one at every time",
+                            between(0, 1)),
+                 number_option("start_deg", "deg", 80.0, {}, "angle at the beginning"),
+                 integer_option("frames", 201, between(2, 1e6), "times that are computed")},
+                "force-driven cases"),
+      number_option("relative_tolerance", "", 1e-6, above(0),
+                    "of the moment, in the sum of the sizes of all moments")};
+  spec.run = run;
+  spec.report = fill_scenario_report;
+  spec.methods = scenario_methods;
+  catalogue.add(std::move(spec));
+}
+
+}  // namespace brachium::pipelines

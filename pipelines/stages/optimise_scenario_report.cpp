@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipelines/stages/common.hpp"
+#include "pipelines/stages/optimise_scenario.hpp"
+
+namespace brachium::pipelines {
+namespace {
+
+using report::Plot;
+using report::Series;
+using report::Style;
+
+// Distinct texts of a column, in their order.
+std::vector<std::string> names_in(const data::Table& table, const std::string& column) {
+  std::vector<std::string> out;
+  for (const std::string& t : table.texts(column)) {
+    if (std::find(out.begin(), out.end(), t) == out.end()) out.push_back(t);
+  }
+  return out;
+}
+
+// Rows of a table where a text column has a value.
+std::vector<std::size_t> rows_of(const data::Table& table, const std::string& column,
+                                 const std::string& value) {
+  std::vector<std::size_t> rows;
+  const auto& texts = table.texts(column);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (texts[i] == value) rows.push_back(i);
+  }
+  return rows;
+}
+
+report::PlotRow force_plots(const data::Table& forces) {
+  report::PlotRow row;
+  row.min_width_px = 420.0;
+  Plot arms{"moment arms", "angle [deg]", "moment arm, flexor positive [mm]"};
+  for (const std::string& muscle : names_in(forces, "muscle")) {
+    Plot plot{muscle, "angle [deg]", "force [N]"};
+    Series arm{muscle, {}, {}};
+    std::vector<double> activations;
+    for (const std::size_t i : rows_of(forces, "muscle", muscle)) {
+      const double a = forces.numbers("activation")[i];
+      if (activations.empty() || activations.back() != a) {
+        activations.push_back(a);
+        plot.series.push_back({fmt::format("activation {:g}", a), {}, {}});
+      }
+      plot.series.back().x.push_back(forces.numbers("angle_deg")[i]);
+      plot.series.back().y.push_back(forces.numbers("force_N")[i]);
+      if (activations.size() > 1) continue;
+      arm.x.push_back(forces.numbers("angle_deg")[i]);
+      arm.y.push_back(forces.numbers("moment_arm_mm")[i]);
+    }
+    row.plots.push_back(std::move(plot));
+    arms.series.push_back(std::move(arm));
+  }
+  row.plots.push_back(std::move(arms));
+  return row;
+}
+
+// Moment curves with their roots, one plot a load.
+report::PlotRow moment_plots(const data::Table& curves, const data::Table& equilibria) {
+  report::PlotRow row;
+  row.min_width_px = 420.0;
+  std::vector<double> loads = equilibria.numbers("load_N");
+  std::sort(loads.begin(), loads.end());
+  loads.erase(std::unique(loads.begin(), loads.end()), loads.end());
+  for (const double load : loads) {
+    Plot plot{fmt::format("load {:g} N", load), "angle [deg]", "moment, flexion positive [N m]"};
+    plot.height_px = 240.0;
+    plot.levels.push_back({0.0, "", report::Tone::plain});
+    Series stable{"stable equilibrium", {}, {}, Style::points},
+        unstable{"unstable equilibrium", {}, {}, Style::points};
+    std::size_t without = 0;
+    for (const std::string& name : names_in(equilibria, "case")) {
+      bool here = false;
+      for (const std::size_t i : rows_of(equilibria, "case", name)) {
+        if (equilibria.numbers("load_N")[i] != load) continue;
+        here = true;
+        const std::string& outcome = equilibria.texts("outcome")[i];
+        without += outcome == "none in range";
+        if (outcome == "none in range") continue;
+        Series& s = outcome == "stable" ? stable : unstable;
+        s.x.push_back(equilibria.numbers("angle_deg")[i]);
+        s.y.push_back(equilibria.numbers("moment_N_m")[i]);
+      }
+      if (!here) continue;
+      Series curve{name, {}, {}};
+      for (const std::size_t i : rows_of(curves, "case", name)) {
+        curve.x.push_back(curves.numbers("angle_deg")[i]);
+        curve.y.push_back(curves.numbers("moment_N_m")[i]);
+      }
+      plot.series.push_back(std::move(curve));
+    }
+    if (!stable.x.empty()) plot.series.push_back(stable);
+    if (!unstable.x.empty()) plot.series.push_back(unstable);
+    if (without > 0)
+      plot.note = fmt::format("{} without an equilibrium in range.",
+                              without == 1 ? "One case is" : fmt::format("{} cases are", without));
+    row.plots.push_back(std::move(plot));
+  }
+  return row;
+}
+
+// |M| over iterations: a line for each start of the first cases.
+Plot convergence_plot(const data::Table& table) {
+  Plot plot{"convergence", "iteration", "|moment| [N m]"};
+  plot.log_y = true;
+  const auto& names = table.texts("case");
+  const auto &start = table.numbers("start_deg"), &iteration = table.numbers("iteration"),
+             &moment = table.numbers("moment_N_m");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (iteration[i] == 0.0) {
+      if (plot.series.size() == 9) break;
+      plot.series.push_back({fmt::format("{}, from {:g} deg", names[i], start[i]), {}, {}});
+    }
+    plot.series.back().x.push_back(iteration[i]);
+    plot.series.back().y.push_back(moment[i] != 0.0 ? std::abs(moment[i]) : std::nan(""));
+  }
+  if (plot.series.size() == 9) plot.note = "The first cases; the table below has all.";
+  return plot;
+}
+
+report::PlotRow history_plots(const data::Table& table) {
+  report::PlotRow row;
+  row.min_width_px = 420.0;
+  for (const std::string& name : names_in(table, "case")) {
+    Plot plot{name, "time [s]", "angle [deg]"};
+    Plot below{"", "time [s]", "load [N]"};
+    below.height_px = 80.0;
+    Series angle{"angle", {}, {}}, load{"load", {}, {}},
+        end{"pressed against the end of the range", {}, {}, Style::points};
+    for (const std::size_t i : rows_of(table, "case", name)) {
+      const double t = table.numbers("time_s")[i];
+      const std::string& kind = table.texts("kind")[i];
+      angle.x.push_back(t);
+      angle.y.push_back(table.numbers("angle_deg")[i]);
+      load.x.push_back(t);
+      load.y.push_back(table.numbers("load_N")[i]);
+      if (kind == "jumped") plot.markers.push_back({t, {}, "jump", report::Tone::warning});
+      if (kind.starts_with("at ")) end.x.push_back(t), end.y.push_back(table.numbers("angle_deg")[i]);
+    }
+    plot.series.push_back(std::move(angle));
+    if (!end.x.empty()) plot.series.push_back(std::move(end));
+    below.series.push_back(std::move(load));
+    plot.below.push_back(std::move(below));
+    row.plots.push_back(std::move(plot));
+  }
+  return row;
+}
+
+report::GridOptions grid_options() {
+  report::GridOptions grid;
+  grid.names = {{"dangle_dload_deg_per_N", "dangle/dload"},
+                {"dactivation_dangle_per_deg", "dactivation/dangle"},
+                {"dactivation_dload_per_N", "dactivation/dload"},
+                {"stiffness_N_m_per_rad", "dM/dangle"}};
+  grid.decimals = {{"angle_deg", 2}, {"angle_error_deg", 2}, {"start_deg", 0},
+                   {"iteration", 0}, {"iterations", 0},      {"evaluations", 0}};
+  grid.digits = 4;
+  grid.column_digits = {{"moment_N_m", 3}, {"step_deg", 4}, {"dangle_dload_deg_per_N", 3}};
+  grid.text_tone = {{"outcome", [](const std::string& t) {
+                       return t == "stable" || t == "held" ? report::Tone::good : report::Tone::warning;
+                     }}};
+  return grid;
+}
+
+}  // namespace
+
+void fill_scenario_report(const ReportContext& context, report::Section& section) {
+  const StageData& output = *context.output;
+  const auto table = [&](const std::string& name) -> const data::Table& { return output.tables.at(name); };
+  report::GridOptions grid = grid_options();
+  for (const Options& m : context.options->tables("muscle")) {
+    const std::string name = m.text("name");
+    grid.names["activation_" + name] = name + ": activation";
+    grid.names["dangle_dactivation_" + name + "_deg"] = "dangle/dactivation " + name;
+    grid.column_digits["dangle_dactivation_" + name + "_deg"] = 3;
+  }
+  section.title += ": static equilibrium";
+  section.blocks.push_back(
+      report::Paragraph{"Forces as given, between the tables' angles and activations by interpolation; "
+                        "moment arms are positive for flexors. A load above 0 extends."});
+  section.blocks.push_back(force_plots(table("forces")));
+  if (table("equilibria").rows() > 0) {
+    section.blocks.push_back(
+        report::Paragraph{"Activation-driven: the joint rests where the sum of all moments vanishes, and "
+                          "stays there where it falls with the angle."});
+    section.blocks.push_back(moment_plots(table("moments"), table("equilibria")));
+    section.blocks.push_back(report::make_grid(table("equilibria"), grid));
+    section.blocks.push_back(report::PlotRow{{convergence_plot(table("convergence"))}});
+    report::Section iterations;
+    iterations.blocks.push_back(report::make_grid(table("convergence"), grid));
+    section.blocks.push_back(report::Details{"every iteration", {iterations}});
+  }
+  if (table("positions").rows() > 0) {
+    section.blocks.push_back(report::Paragraph{
+        "Position-driven: the activation of one muscle that holds an angle. Where there is none, the nearest "
+        "activation, the moment that is left, and the further load that would hold it."});
+    section.blocks.push_back(report::make_grid(table("positions"), grid));
+  }
+  if (table("histories").rows() > 0) {
+    section.blocks.push_back(report::Paragraph{"Force-driven: where the load takes the joint."});
+    section.blocks.push_back(history_plots(table("histories")));
+    if (table("events").rows() > 0) section.blocks.push_back(report::make_grid(table("events"), grid));
+  }
+}
+
+std::string scenario_methods(const ReportContext& context) {
+  return fmt::format(
+      "Static equilibria are roots of the joint moment (equivalent static system, Valentin 2019, "
+      "doi:10.18419/opus-10504), found by Newton's method inside brackets of changing sign to {:g} of the "
+      "sum of "
+      "the sizes of all moments; an equilibrium is stable where the moment falls with the angle.",
+      context.options->number("relative_tolerance"));
+}
+
+}  // namespace brachium::pipelines
