@@ -7,6 +7,7 @@
 #include <set>
 
 #include "fem/element/quadrature.hpp"
+#include "fem/solve/guided_motion.hpp"
 #include "fem/solve/problem_check.hpp"
 
 namespace brachium::fem {
@@ -39,6 +40,8 @@ void check_values(const Problem& problem, const BoundaryCondition& c, Findings& 
     if (!(rigid->translation_m.allFinite() && rigid->centre_m.allFinite() && std::isfinite(rigid->angle_rad)))
       bad("a value is not finite");
     if (!(rigid->axis.allFinite() && rigid->axis.norm() > 0.0)) bad("the axis of rotation has no direction");
+  } else if (const auto* guided = std::get_if<GuidedMotion>(&c.kind)) {
+    if (const std::string what = guided_motion_fault(*guided); !what.empty()) bad(what);
   } else if (const auto* traction = std::get_if<DeadTraction>(&c.kind)) {
     if (!traction->traction_pa.allFinite()) bad("the traction is not finite");
   } else if (const auto* pressure = std::get_if<FollowerPressure>(&c.kind)) {

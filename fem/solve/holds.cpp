@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "fem/solve/guided_motion.hpp"
+
 namespace brachium::fem {
 namespace {
 
@@ -120,7 +122,8 @@ std::vector<Hold> holds_of(const Problem& problem, int condition) {
                        const auto column = static_cast<Eigen::Index>(k);
                        return column < x.displacement_m.cols() && !std::isnan(x.displacement_m(i, column));
                      },
-                     [](const RigidMotion&) { return true; }, [](const auto&) { return false; }},
+                     [](const RigidMotion&) { return true; },
+                     [](const GuidedMotion&) { return true; }, [](const auto&) { return false; }},
           c.kind);
       if (held) hold(k, Eigen::Vector3d::Unit(i));
     }
@@ -143,6 +146,12 @@ double held_value(const Problem& problem, const Hold& hold, double amplitude) {
                    const Eigen::Vector3d arm = problem.mesh->points.col(hold.node) - x.centre_m;
                    const Eigen::AngleAxisd turn(amplitude * x.angle_rad, x.axis.normalized());
                    return hold.direction.dot(turn * arm - arm + amplitude * x.translation_m);
+                 },
+                 [&](const GuidedMotion& x) {
+                   const GuidedPlace now = guided_place(x, amplitude);
+                   const Eigen::Vector3d arm = problem.mesh->points.col(hold.node) - x.centre_m;
+                   const Eigen::AngleAxisd turn(now.angle_rad, x.axis.normalized());
+                   return hold.direction.dot(turn * arm - arm + now.place_m - x.centre_m);
                  },
                  [](const auto&) { return 0.0; }},
       c.kind);

@@ -47,6 +47,17 @@ struct RigidMotion {
   double angle_rad = 0.0;
 };
 
+/// A rigid motion along places that are listed: x = place(a) + R(angle(a)) (X - centre), R about `axis`. Between the
+/// amplitudes listed, place and angle are cubic (Hermite, slopes of the parabola through three neighbours); beyond the
+/// ends they stay. The first amplitude is 0, at which the body is where the mesh has it: place = centre, angle = 0.
+struct GuidedMotion {
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  Eigen::VectorXd amplitude;  ///< n >= 2, rising, the first 0
+  Eigen::Matrix3Xd place_m;   ///< 3 x n
+  Eigen::VectorXd angle_rad;  ///< n
+};
+
 /// No displacement along the plane's normal; the surface must be plane (its normal is found, any direction).
 struct SymmetryPlane {};
 
@@ -72,7 +83,7 @@ struct BodyForce {
 struct BoundaryCondition {
   std::string name;     ///< unique
   std::string surface;  ///< surface or node set of the mesh; empty for a body force
-  std::variant<Fixed, PrescribedDisplacement, PrescribedField, RigidMotion, SymmetryPlane, DeadTraction,
+  std::variant<Fixed, PrescribedDisplacement, PrescribedField, RigidMotion, GuidedMotion, SymmetryPlane, DeadTraction,
                FollowerPressure, BodyForce>
       kind;
 };

@@ -1,0 +1,171 @@
+#include "fem/limb/muscle_body.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+namespace brachium::fem {
+namespace {
+
+constexpr double knot_spacing = std::numbers::pi / 90.0;  // 2 deg
+
+Eigen::Vector3d spatial(const Eigen::Vector2d& v) {
+  return {v.x(), v.y(), 0.0};
+}
+
+/// Away from the humerus.
+Eigen::Vector3d outward(const MuscleBody& body) {
+  return Eigen::Vector3d::UnitX() * (body.cable.anterior ? 1.0 : -1.0);
+}
+
+/// The stress-free axis: begins at `from`, runs along `along` (distally).
+struct Axle {
+  Eigen::Vector3d from, along;
+};
+
+Axle stress_free_axis(const MuscleBody& body) {
+  return {spatial(body.cable.origin_m) + body.standoff_m * outward(body),
+          -end_place(body, body.reference_rad).pull};
+}
+
+data::Mesh stress_free_mesh(const MuscleBody& body) {
+  SpindleOptions o;
+  o.type = cell_type(body.formulation);
+  o.origin_tendon = {body.tendon_origin_m, body.tendon_cells};
+  o.belly = {body.belly_length_m, body.belly_cells};
+  o.insertion_tendon = {body.tendon_insertion_m, body.tendon_cells};
+  o.profile_m = body.profile_m;
+  o.flatness = body.flatness;
+  o.section = body.section;
+  o.transition_m = body.transition_m;
+  data::Mesh mesh = spindle(o);
+  const Axle axle = stress_free_axis(body);
+  Eigen::Matrix3d frame;  // the spindle's x across the plane of motion, y in it, z along
+  frame << Eigen::Vector3d::UnitZ(), axle.along.cross(Eigen::Vector3d::UnitZ()), axle.along;
+  for (Eigen::Index p = 0; p < mesh.points.cols(); ++p)
+    mesh.points.col(p) = axle.from + frame * mesh.points.col(p).eval();
+  const auto turn = [&](Eigen::MatrixXd& vectors) {
+    if (vectors.rows() == 3) vectors = (frame * vectors).eval();
+  };
+  if (mesh.point_fields.contains("fibre")) turn(mesh.point_fields.at("fibre"));
+  if (mesh.cell_fields.contains("fibre")) turn(mesh.cell_fields.at("fibre"));
+  return mesh;
+}
+
+/// Amplitudes of the places that both motions list.
+std::vector<double> knots(const MuscleBody& body, const AngleRange& range) {
+  std::vector<double> a{0.0, 0.25, 0.5, 0.75, 1.0};
+  const double reach = std::max(range.upper_rad - body.reference_rad, body.reference_rad - range.lower_rad);
+  const int n = std::max(1, static_cast<int>(std::ceil(reach / knot_spacing)));
+  for (int i = 1; i <= n; ++i) a.push_back(1.0 + reach * i / n);
+  return a;
+}
+
+GuidedMotion distal_motion(const MuscleBody& body, const AngleRange& range) {
+  const std::vector<double> a = knots(body, range);
+  const auto n = static_cast<Eigen::Index>(a.size());
+  const double sign = range.upper_rad > body.reference_rad ? 1.0 : -1.0;
+  const Axle axle = stress_free_axis(body);
+  GuidedMotion motion;
+  motion.centre_m = axle.from + body.stress_free_length_m() * axle.along;
+  motion.amplitude = Eigen::VectorXd::Map(a.data(), n);
+  motion.place_m.resize(3, n);
+  motion.angle_rad = Eigen::VectorXd::Zero(n);
+  const EndPlace in_situ = end_place(body, body.reference_rad);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (a[static_cast<std::size_t>(i)] <= 1.0) {
+      motion.place_m.col(i) = motion.centre_m + motion.amplitude[i] * (in_situ.centre_m - motion.centre_m);
+      continue;
+    }
+    const EndPlace place = end_place(body, body.reference_rad + sign * (motion.amplitude[i] - 1.0));
+    motion.place_m.col(i) = place.centre_m;
+    motion.angle_rad[i] = place.turn_rad;
+  }
+  return motion;
+}
+
+GuidedMotion proximal_motion(const MuscleBody& body) {
+  GuidedMotion motion;
+  motion.centre_m = stress_free_axis(body).from;
+  motion.amplitude = Eigen::Vector2d(0.0, 1.0);
+  motion.place_m.resize(3, 2);
+  motion.place_m << motion.centre_m, spatial(body.cable.origin_m);
+  motion.angle_rad = Eigen::Vector2d::Zero();
+  return motion;
+}
+
+}  // namespace
+
+double MuscleBody::cable_length_m() const {
+  return CablePath(cable, reference_rad).length_m() - pre_stretch * stress_free_length_m();
+}
+
+EndPlace end_place(const MuscleBody& body, double q) {
+  const double cable = body.cable_length_m();
+  const CablePath::Place place = CablePath(body.cable, q).place(cable);
+  const Eigen::Vector2d at_reference = CablePath(body.cable, body.reference_rad).place(cable).towards_origin;
+  const Eigen::Vector2d now = place.towards_origin;
+  return {spatial(place.point_m), spatial(now),
+          std::atan2(at_reference.x() * now.y() - at_reference.y() * now.x(), at_reference.dot(now))};
+}
+
+double amplitude(const MuscleBody& body, double q) {
+  return 1.0 + std::abs(q - body.reference_rad);
+}
+
+void check(const MuscleBody& body, const AngleRange& range) {
+  const auto require = [&](bool good, const std::string& what, double value, const std::string& allowed) {
+    if (good) return;
+    throw data::InputError("limb-geometry", fmt::format("{}: {} = {:.6g}", body.name, what, value),
+                           "it must be " + allowed);
+  };
+  require(range.lower_rad < range.upper_rad, "lower end of the range of angles [rad]", range.lower_rad,
+          "below the upper end");
+  require(body.reference_rad == range.lower_rad || body.reference_rad == range.upper_rad, "reference_rad",
+          body.reference_rad, "one end of the range of angles: the one at which the muscle is shortest");
+  require(body.belly_length_m > 0.0, "belly_length_m", body.belly_length_m, "greater than 0");
+  require(body.tendon_origin_m >= 0.0, "tendon_origin_m", body.tendon_origin_m, "0 (rigid) or greater");
+  require(body.tendon_insertion_m >= 0.0, "tendon_insertion_m", body.tendon_insertion_m,
+          "0 (rigid) or greater");
+  require(body.pre_stretch > 0.5 && body.pre_stretch < 2.0, "pre_stretch", body.pre_stretch, "in (0.5, 2)");
+  require(body.standoff_m >= 0.0, "standoff_m", body.standoff_m, "0 or greater");
+  require(body.bulk_modulus_pa > 0.0, "bulk_modulus_pa", body.bulk_modulus_pa, "greater than 0, or infinity");
+  if (body.fibres != "harmonic" && body.fibres != "mesh_lines") {
+    throw data::InputError("limb-geometry", fmt::format("{}: fibres cannot be `{}`", body.name, body.fibres),
+                           "\"harmonic\" or \"mesh_lines\"");
+  }
+  require(body.cable_length_m() >= 0.0, "length of the rigid tendon that is left [m]", body.cable_length_m(),
+          "0 or greater: shorten belly or tendons, lessen the pre-stretch, or move the origin away");
+  const int n = static_cast<int>(std::ceil((range.upper_rad - range.lower_rad) / knot_spacing));
+  for (int i = 0; i <= n; ++i) end_place(body, range.lower_rad + (range.upper_rad - range.lower_rad) * i / n);
+}
+
+BuiltMuscle build(const MuscleBody& body, const AngleRange& range) {
+  check(body, range);
+  BuiltMuscle built;
+  auto mesh = std::make_shared<data::Mesh>(stress_free_mesh(body));
+  TissueRules rules;
+  if (body.fibres == "harmonic") {
+    rules.fibres.push_back({{}, HarmonicFibres{"origin", "insertion", std::nullopt}});
+  } else {
+    rules.fibres.push_back({{}, MeshFieldFibres{"fibre"}});
+  }
+  rules.muscle.push_back({{}, std::string("gamma_M")});
+  Tissue tissue = build_tissue(*mesh, body.formulation, rules);
+  built.directions = std::move(tissue.directions);
+  built.harmonic = std::move(tissue.harmonic);
+  Problem& p = built.problem;
+  p.formulation = body.formulation;
+  p.tissue = std::move(tissue.field);
+  Volumetric volumetric;
+  volumetric.bulk_modulus_pa = body.bulk_modulus_pa;
+  p.materials.assign(mesh->regions.size(), {body.material, volumetric});
+  p.conditions = {{"origin", "origin", proximal_motion(body)},
+                  {"insertion", "insertion", distal_motion(body, range)}};
+  p.mesh = std::move(mesh);
+  return built;
+}
+
+}  // namespace brachium::fem

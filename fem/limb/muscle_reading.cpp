@@ -1,0 +1,126 @@
+#include "fem/limb/muscle_reading.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fem/quantities/point_fields.hpp"
+#include "fem/quantities/section.hpp"
+#include "fem/quantities/stress_wrench.hpp"
+#include "fem/solve/guided_motion.hpp"
+
+namespace brachium::fem {
+namespace {
+
+void read_stretch(const MuscleReading& m, const Configuration& configuration, SolvedMuscle& state) {
+  const PointFields fields = point_fields(m.problem, m.discretisation, configuration);
+  state.stretch_min = fields.fibre_stretch.minCoeff();
+  state.stretch_max = fields.fibre_stretch.maxCoeff();
+  double sum = 0.0;
+  const int points = m.discretisation.quadrature().size();
+  Eigen::MatrixX3d gradient;
+  for (int c = 0; c < m.discretisation.cell_count(); ++c) {
+    for (int q = 0; q < points; ++q) {
+      double weight = 0.0;
+      m.discretisation.reference_gradients(c, q, gradient, weight);
+      sum += weight * fields.fibre_stretch[q + points * c];
+    }
+  }
+  state.stretch_mean = sum / m.discretisation.volume();
+}
+
+/// Work of the reactions on the motion of the end: R . dp/dq + e . M dpsi/dq, by central differences of the
+/// place.
+double generalised_moment(const MuscleReading& m, const SolvedMuscle& state) {
+  constexpr double h = 1e-5;  // rad; the place is known to rounding, so the error is h^2 and 1e-16/h
+  const EndPlace after = end_place(m.body, state.q_rad + h), before = end_place(m.body, state.q_rad - h);
+  // The barycentre need not be the centre that the place is given for: it turns about that.
+  const EndPlace now = end_place(m.body, state.q_rad);
+  const double turning = (after.turn_rad - before.turn_rad) / (2.0 * h);
+  const Eigen::Vector3d velocity = (after.centre_m - before.centre_m) / (2.0 * h) +
+                                   turning * m.hinge.axis.cross(state.end_m - now.centre_m);
+  return state.wrench.force_n.dot(velocity) + turning * m.hinge.axis.dot(state.wrench.moment_n_m);
+}
+
+}  // namespace
+
+double centroid_line_m(const MuscleReading& m, const Configuration& configuration) {
+  const auto& origin = std::get<GuidedMotion>(m.problem.conditions[0].kind);
+  const auto& insertion = std::get<GuidedMotion>(m.problem.conditions[1].kind);
+  const Eigen::Vector3d along = insertion.centre_m - origin.centre_m;
+  const int n = 2 * m.body.belly_cells;
+  Eigen::Vector3d last = barycentre(m.discretisation, configuration, "origin");
+  double length = 0.0;
+  for (int i = 1; i < n; ++i) {
+    // Off the faces between cells, where a plane would cut along edges.
+    const double part = (i + 1e-3) / n;
+    const Eigen::Vector3d next =
+        section(m.discretisation, configuration, origin.centre_m + part * along, along).centroid_m;
+    length += (next - last).norm();
+    last = next;
+  }
+  return length + (barycentre(m.discretisation, configuration, "insertion") - last).norm();
+}
+
+void read_state(const MuscleReading& m, const AcceptedState& accepted, SolvedMuscle& state) {
+  const Configuration& now = accepted.state.configuration;
+  state.end_m = barycentre(m.discretisation, now, "insertion");
+  state.wrench = wrench(m.discretisation, now, accepted.internal_force, accepted.external_force, "insertion",
+                        state.end_m);
+  state.force_n = state.wrench.force_n.norm();
+  state.tension_n = state.wrench.force_n.dot(end_place(m.body, state.q_rad).pull);
+  state.arms = lever_arms(m.hinge, state.wrench, state.end_m);
+  // The third side of the identity: nodal forces summed about the hinge itself.
+  const Wrench about_hinge = wrench(m.discretisation, now, accepted.internal_force, accepted.external_force,
+                                    "insertion", m.hinge.centre_m);
+  const double direct = m.hinge.axis.dot(about_hinge.moment_n_m);
+  state.identity_error =
+      std::max(std::abs(direct - state.arms.moment_n_m), std::abs(direct - state.arms.moment_of_line_n_m)) /
+      state.force_n;
+  state.moment_by_stress_n_m = m.hinge.axis.dot(
+      stress_wrench(m.problem, m.discretisation, now, "insertion", m.hinge.centre_m).moment_n_m);
+  state.moment_n_m = generalised_moment(m, state);
+  state.length_m = centroid_line_m(m, now) + m.body.cable_length_m();
+  read_stretch(m, now, state);
+  state.energy_j = accepted.record.energy;
+  state.stability = accepted.record.stability.verdict;
+  state.relative_residual = accepted.record.relative_residual;
+}
+
+void read_contacts(const MuscleReading& m, const std::vector<Bone>& left_out, const AcceptedState& accepted,
+                   SolvedMuscle& state) {
+  const Eigen::VectorXd& dofs = accepted.state.configuration.dofs;
+  const auto surface = [&](const RigidShape& shape, double penalty, double smoothing) {
+    ContactOptions options;
+    options.penalty_pa_per_m = penalty;
+    options.smoothing_m = smoothing;
+    return ContactSurface(m.discretisation, "side", shape, options);
+  };
+  for (const Contact& contact : m.problem.contacts) {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(dofs.size());
+    const ContactSums sums =
+        surface(contact.body, contact.penalty_pa_per_m, contact.smoothing_m).add_force(dofs, {}, {}, force);
+    state.energy_j += sums.energy_j;
+    state.contacts.push_back({contact.name, sums.force_n.norm(), sums.force_n, sums.greatest_penetration_m,
+                              sums.greatest_pressure_pa, sums.area_m2});
+  }
+  for (const Bone& bone : left_out) {
+    state.least_gap_left_out_m =
+        std::min(state.least_gap_left_out_m, surface(bone.shape, 1.0, 0.0).least_gap_m(dofs, {}));
+  }
+}
+
+double least_axis_distance_m(const MuscleBody& body, const AngleRange& range, const RigidShape& shape) {
+  double least = std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d from(body.cable.origin_m.x(), body.cable.origin_m.y(), 0.0);
+  for (int i = 0; i <= 60; ++i) {
+    const Eigen::Vector3d to =
+        end_place(body, range.lower_rad + (range.upper_rad - range.lower_rad) * i / 60.0).centre_m;
+    for (int k = 0; k <= 100; ++k)
+      least = std::min(least, distance(shape, from + (to - from) * (k / 100.0)).value);
+  }
+  return least;
+}
+
+}  // namespace brachium::fem

@@ -1,0 +1,171 @@
+#include "fem/limb/muscle_states.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "fem/limb/muscle_reading.hpp"
+
+namespace brachium::fem {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+std::string words(double q, double activation) {
+  return fmt::format("{:.4g} deg, activation {:.4g}", q / degree, activation);
+}
+
+}  // namespace
+
+MuscleStates::MuscleStates(MuscleBody body, AngleRange range, Hinge hinge, std::vector<Bone> bones,
+                           SolvedMuscleOptions options)
+    : body_(std::move(body)),
+      range_(range),
+      hinge_(hinge),
+      options_(std::move(options)),
+      built_(build(body_, range_)) {
+  discretisation_ = std::make_shared<const Discretisation>(built_.problem.mesh, built_.problem.formulation);
+  const double cell = std::cbrt(discretisation_->volume() / discretisation_->cell_count());
+  penalty_ = options_.contact_penalty_pa_per_m > 0.0
+                 ? options_.contact_penalty_pa_per_m
+                 : 30.0 * (body_.material.muscle.c1_pa + body_.material.muscle.c2_pa) / cell;
+  choose_bones(bones);
+  for (const Bone& bone : bones_) {
+    Contact contact;
+    contact.name = bone.name;
+    contact.surface = "side";
+    contact.body = bone.shape;
+    contact.penalty_pa_per_m = penalty_;
+    contact.smoothing_m = options_.contact_smoothing_m;
+    built_.problem.contacts.push_back(contact);
+  }
+  // From the stress-free place to the in-situ one.
+  Known reference;
+  Phase phase;
+  phase.name = "in situ";
+  phase.amplitude = {{"origin", 1.0}, {"insertion", 1.0}};
+  phase.steps = 4;
+  reference.state.q_rad = reference.state.from_q_rad = body_.reference_rad;
+  if (const std::string why = attempt({}, phase, reference); !why.empty()) {
+    throw data::ConvergenceFailure(
+        {fmt::format("{}: in-situ place at {}", body_.name, words(body_.reference_rad, 0.0)), why, 0, 0.0,
+         0.0, body_.name});
+  }
+  known_.push_back(std::move(reference));
+}
+
+void MuscleStates::choose_bones(const std::vector<Bone>& bones) {
+  const double radius = *std::max_element(body_.profile_m.begin(), body_.profile_m.end());
+  const double reach = (1.0 + options_.touch_margin_norm) * radius * std::max(1.0, body_.flatness);
+  for (const Bone& bone : bones) {
+    check(bone.shape, bone.name);
+    const double distance = least_axis_distance_m(body_, range_, bone.shape);
+    const bool touches = distance < reach;
+    (touches ? bones_ : left_out_).push_back(bone);
+    log_.push_back(fmt::format(
+        "{}: contact with {} {}: the line between the ends comes as near as {:.1f} mm, the muscle reaches "
+        "{:.1f} mm",
+        body_.name, bone.name, touches ? "is modelled" : "is left out", 1e3 * distance, 1e3 * reach));
+  }
+}
+
+const MuscleStates::Known* MuscleStates::find(double q, double activation) const {
+  for (const Known& k : known_) {
+    if (std::abs(k.state.q_rad - q) < 1e-12 && std::abs(k.state.activation - activation) < 1e-12) return &k;
+  }
+  return nullptr;
+}
+
+std::vector<const MuscleStates::Known*> MuscleStates::nearest(double q, double activation) const {
+  std::vector<const Known*> order;
+  for (const Known& k : known_) order.push_back(&k);
+  // An activation of 1 is as far as a turn of one radian.
+  const auto far = [&](const Known* k) {
+    return std::hypot(k->state.q_rad - q, k->state.activation - activation);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Known* a, const Known* b) { return far(a) < far(b); });
+  return order;
+}
+
+std::string MuscleStates::attempt(const SolveState& from, const Phase& phase, Known& reached) {
+  const auto start = std::chrono::steady_clock::now();
+  Problem& problem = built_.problem;
+  problem.programme = {phase};
+  SolveState restart;
+  const bool warm = from.configuration.dofs.size() > 0;
+  if (warm) {
+    restart.configuration = from.configuration;
+    restart.amplitude = restart.phase_amplitude = from.amplitude;
+    restart.phase_activation = from.configuration.activation;
+  }
+  const Summary summary = solve(
+      problem, options_.solve,
+      [&](const AcceptedState& accepted) {
+        if (accepted.state.phase_time >= 1.0) evaluate(accepted, reached.state);
+      },
+      {}, warm ? &restart : nullptr);
+  reached.state.newton_iterations += summary.newton_iterations;
+  reached.state.chord_iterations += summary.chord_iterations;
+  reached.state.steps += static_cast<int>(summary.steps.size());
+  reached.state.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  unknowns_ = summary.unknowns;
+  if (!summary.completed) return summary.reason;
+  reached.solved = summary.last;
+  return {};
+}
+
+void MuscleStates::evaluate(const AcceptedState& accepted, SolvedMuscle& state) const {
+  read_state({body_, hinge_, built_.problem, *discretisation_}, accepted, state);
+  read_contacts({body_, hinge_, built_.problem, *discretisation_}, left_out_, accepted, state);
+}
+
+const SolvedMuscle& MuscleStates::solve_state(double q, double activation) {
+  if (!(q >= range_.lower_rad - 1e-12 && q <= range_.upper_rad + 1e-12) ||
+      !(activation >= 0.0 && activation <= 1.0)) {
+    throw data::InputError("limb-range",
+                           fmt::format("{}: there is no state at {}", body_.name, words(q, activation)),
+                           fmt::format("angles from {:.4g} to {:.4g} deg and activations from 0 to 1",
+                                       range_.lower_rad / degree, range_.upper_rad / degree));
+  }
+  if (const Known* known = find(q, activation)) return known->state;
+  std::string tried;
+  int attempts = 0;
+  for (const Known* from : nearest(q, activation)) {
+    if (++attempts > 3) break;
+    Known reached;
+    reached.state.q_rad = q;
+    reached.state.activation = activation;
+    reached.state.from_q_rad = from->state.q_rad;
+    reached.state.from_activation = from->state.activation;
+    Phase phase;
+    phase.name = words(q, activation);
+    phase.amplitude = {{"insertion", amplitude(body_, q)}};
+    for (const std::string& region : built_.problem.mesh->regions) phase.activation[region] = activation;
+    phase.steps =
+        std::max({1, static_cast<int>(std::ceil(std::abs(q - from->state.q_rad) / options_.step_rad)),
+                  static_cast<int>(
+                      std::ceil(std::abs(activation - from->state.activation) / options_.step_activation))});
+    const std::string why = attempt(from->solved, phase, reached);
+    if (why.empty()) {
+      known_.push_back(std::move(reached));
+      return known_.back().state;
+    }
+    tried += fmt::format("{}from {}: {}", tried.empty() ? "" : "; ",
+                         words(from->state.q_rad, from->state.activation), why);
+  }
+  throw data::ConvergenceFailure(
+      {fmt::format("{} at {}", body_.name, words(q, activation)), tried, attempts, 0.0, 0.0, body_.name});
+}
+
+const SolveState& MuscleStates::solved(double q, double activation) const {
+  if (const Known* known = find(q, activation)) return known->solved;
+  throw data::InputError(
+      "limb-range", fmt::format("{}: the state at {} has not been solved", body_.name, words(q, activation)),
+      "solve it first");
+}
+
+}  // namespace brachium::fem
