@@ -14,6 +14,7 @@ the mesh and starting either program are not counted; memory is the process' pea
 import argparse
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -90,7 +91,7 @@ def shown(value):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("ours", nargs="?", help="fem_block_bench; without it dolfinx alone is measured")
-    parser.add_argument("--arguments", nargs="*", default=[], help="passed to our program")
+    parser.add_argument("--arguments", type=shlex.split, default=[], help="passed to our program, one text: --arguments=\"--bulk_mpa inf --steps 1\"")
     parser.add_argument("--core", type=int, default=0)
     parser.add_argument("--repeat", type=int, default=1, help="the run with the least CPU time counts")
     parser.add_argument("--cells", default="24x6x6")
