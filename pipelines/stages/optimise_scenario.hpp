@@ -1,5 +1,5 @@
 #pragma once
-/// The report of optimise.scenario.
+/// The parts of optimise.scenario: what it does, and its report.
 
 #include <string>
 
@@ -7,6 +7,7 @@
 
 namespace brachium::pipelines {
 
+void run_scenarios(const StageContext& context, StageOutput& out);
 void fill_scenario_report(const ReportContext& context, report::Section& section);
 std::string scenario_methods(const ReportContext& context);
 

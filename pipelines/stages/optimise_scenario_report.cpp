@@ -60,6 +60,23 @@ report::PlotRow force_plots(const data::Table& forces) {
   return row;
 }
 
+// Roots as vertical marks with their angle; neighbours within 4 deg share one.
+void mark_roots(std::vector<double> roots, report::Tone tone, Plot& plot) {
+  std::sort(roots.begin(), roots.end());
+  for (std::size_t i = 0; i < roots.size();) {
+    std::size_t last = i;
+    while (last + 1 < roots.size() && roots[last + 1] - roots[i] < 4.0) ++last;
+    const std::string unstable = tone == report::Tone::bad ? " unstable" : "";
+    if (last == i) {
+      plot.markers.push_back({roots[i], {}, fmt::format("{:.1f}°{}", roots[i], unstable), tone});
+    } else {
+      plot.markers.push_back(
+          {roots[i], roots[last], fmt::format("{:.1f}-{:.1f}°{}", roots[i], roots[last], unstable), tone});
+    }
+    i = last + 1;
+  }
+}
+
 // Moment curves with their roots, one plot a load.
 report::PlotRow moment_plots(const data::Table& curves, const data::Table& equilibria) {
   report::PlotRow row;
@@ -71,8 +88,7 @@ report::PlotRow moment_plots(const data::Table& curves, const data::Table& equil
     Plot plot{fmt::format("load {:g} N", load), "angle [deg]", "moment, flexion positive [N m]"};
     plot.height_px = 240.0;
     plot.levels.push_back({0.0, "", report::Tone::plain});
-    Series stable{"stable equilibrium", {}, {}, Style::points},
-        unstable{"unstable equilibrium", {}, {}, Style::points};
+    std::vector<double> stable, unstable;
     std::size_t without = 0;
     for (const std::string& name : names_in(equilibria, "case")) {
       bool here = false;
@@ -82,9 +98,7 @@ report::PlotRow moment_plots(const data::Table& curves, const data::Table& equil
         const std::string& outcome = equilibria.texts("outcome")[i];
         without += outcome == "none in range";
         if (outcome == "none in range") continue;
-        Series& s = outcome == "stable" ? stable : unstable;
-        s.x.push_back(equilibria.numbers("angle_deg")[i]);
-        s.y.push_back(equilibria.numbers("moment_N_m")[i]);
+        (outcome == "stable" ? stable : unstable).push_back(equilibria.numbers("angle_deg")[i]);
       }
       if (!here) continue;
       Series curve{name, {}, {}};
@@ -94,8 +108,8 @@ report::PlotRow moment_plots(const data::Table& curves, const data::Table& equil
       }
       plot.series.push_back(std::move(curve));
     }
-    if (!stable.x.empty()) plot.series.push_back(stable);
-    if (!unstable.x.empty()) plot.series.push_back(unstable);
+    mark_roots(stable, report::Tone::good, plot);
+    mark_roots(unstable, report::Tone::bad, plot);
     if (without > 0)
       plot.note = fmt::format("{} without an equilibrium in range.",
                               without == 1 ? "One case is" : fmt::format("{} cases are", without));
