@@ -8,7 +8,7 @@ OURS prints one line of JSON: cpu_s, newton_iterations, factorisations, cpu_per_
 factor_nonzeros, factor_flops, threads, ... (what it does not print is shown as -). Compiling dolfinx' element kernels, building
 the mesh and starting either program are not counted; memory is the process' peak.
 
-    python3 tests/bench/fem_peer_bench.py build/release/tests/bench/fem_block_bench [--arguments ...]
+    python3 tests/bench/fem_peer_bench.py build/release/tests/bench/fem_block_bench [--arguments="--bulk_mpa inf --steps 1"]
         [--core 0] [--repeat 1] [--cells 24x6x6] [--solver ldl|lu] [--json out.json]
 """
 import argparse
