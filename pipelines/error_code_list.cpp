@@ -118,6 +118,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"duplicate-column", "A file has two columns of one name; a mapping could mean either."},
       {"duplicate-condition",
        "Two boundary conditions have the same name, and phases move conditions by name."},
+      {"duplicate-bone", "Two bones have one name. Bones are known by their names; rename one."},
       {"duplicate-muscle", "Two muscles have one name. Muscles are known by their names; rename one."},
       {"duplicate-parameter", "A parameter is free twice: on its own and as part of a group."},
       {"duplicate-signal", "Two signals of one trial have one name. Give each a name of its own."},
@@ -139,6 +140,9 @@ const std::vector<ErrorCode>& error_codes() {
        "dynamics."},
       {"excluded-channel", "A channel failed the quality thresholds and was left out, as the options say."},
       {"extra-field", "A row of a file has more fields than its header."},
+      {"failed-state",
+       "A state of a muscle map could not be solved; the reason says from which states it was tried. A smaller "
+       "range, smaller load steps or a finer mesh may help."},
       {"fibre-field-size",
        "A field of fibres or of tissue shares was made for another mesh or element than the one that is "
        "solved with."},
@@ -249,6 +253,7 @@ const std::vector<ErrorCode>& error_codes() {
        "There is no trial to normalise by. Name trials of kind mvc, or choose another normalisation."},
       {"no-amplitude", "A condition that only holds has no amplitude that a phase could move."},
       {"no-common-frames", "Two series share no frame at which both have a value."},
+      {"no-common-range", "A limb and the muscle paths it is compared with are known at different angles."},
       {"no-common-window", "Signals that are to be used together do not overlap in time."},
       {"no-convergence",
        "A computation did not reach its tolerance; the message names place, step and residual."},
@@ -275,6 +280,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"not-a-grid",
        "States do not lie where a surrogate needs them: a full grid with every pair, or the points of a "
        "sparse grid."},
+      {"not-a-muscle-map", "An input is wired to a stage that left no muscle map. Wire it to fem.muscle_map."},
       {"not-a-number", "A field of a file is not a number."},
       {"not-a-run", "A folder is not that of a run: it has no readable result.json."},
       {"not-a-storage-file", "A file is no OpenSim storage file."},
@@ -416,6 +422,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"unsupported-data-type", "A storage file holds other data than numbers."},
       {"unsupported-motion",
        "Nothing holds the body against a rigid motion. Fix or prescribe displacements that stop it."},
+      {"unsupported-scaling", "A limb with bones as triangle meshes cannot be scaled to a subject."},
       {"unsupported-version", "A file states a version of its format that is not known here."},
       {"unsymmetric-tangent",
        "A pressure follows a surface with a free edge: the tangent is unsymmetric, and its "

@@ -183,7 +183,7 @@ void add_session_stages(Catalogue& catalogue);   ///< twin.session
 void add_emg_stages(Catalogue& catalogue);       ///< emg.quality, emg.envelope, emg.onset, emg.activation
 void add_limb_stages(Catalogue& catalogue);      ///< limb.kinematics, limb.inverse_dynamics, limb.dynamometer
 void add_hill_stages(Catalogue& catalogue);      ///< hill.moment
-void add_fem_stages(Catalogue& catalogue);       ///< fem.solve
+void add_fem_stages(Catalogue& catalogue);       ///< fem.solve, fem.muscle_map
 void add_optimise_stages(Catalogue& catalogue);  ///< optimise.calibrate, optimise.cross_validate
 void add_compare_stages(Catalogue& catalogue);   ///< pipelines.compare
 

@@ -43,9 +43,9 @@ std::optional<Gradient> gradient_of(const MuscleState& s, MapOutput output) {
   return std::nullopt;
 }
 
-const char* text(Stability stability) {
-  return stability == Stability::stable     ? "stable"
-         : stability == Stability::unstable ? "unstable"
+const char* text(StateStability stability) {
+  return stability == StateStability::stable     ? "stable"
+         : stability == StateStability::unstable ? "unstable"
                                             : "unknown";
 }
 
@@ -145,7 +145,7 @@ MapSamples samples_of(const MuscleMap& map, const std::vector<MapOutput>& output
   const auto n = static_cast<Eigen::Index>(outputs.size());
   bool gradients = true;
   for (const MuscleState& s : map.states) {
-    if (s.stability == Stability::unstable) {
+    if (s.stability == StateStability::unstable) {
       out.left_out.push_back({s.at, "unstable"});
       continue;
     }

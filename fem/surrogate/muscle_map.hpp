@@ -12,7 +12,7 @@
 
 namespace brachium::fem {
 
-enum class Stability { stable, unstable, unknown };
+enum class StateStability { stable, unstable, unknown };
 
 struct Gradient {
   double dtheta = 0.0;  ///< [unit/rad]
@@ -35,7 +35,7 @@ struct MuscleState {
   std::optional<double> tdm_m, vrla_m, vrla_plus_m;  ///< lever arms
   std::optional<double> contact_force_n;
   std::optional<FibreStretch> fibre_stretch;
-  Stability stability = Stability::unknown;
+  StateStability stability = StateStability::unknown;
   double force_tolerance_n = 0.0;  ///< what the solver's tolerance leaves open in F
 };
 

@@ -76,6 +76,8 @@ OptionSpec map_option(std::string key, Bounds bounds, std::string doc) {
   spec.doc = std::move(doc);
   spec.lower = bounds.lower;
   spec.upper = bounds.upper;
+  spec.lower_open = bounds.lower_open;
+  spec.upper_open = bounds.upper_open;
   spec.fallback = std::map<std::string, double>{};
   return spec;
 }

@@ -262,6 +262,8 @@ OptionSpec output_option() {
       "wanted quantities, one row per accepted state in the table `quantities`");
 }
 
+}  // namespace
+
 OptionSpec solver_option() {
   const fem::SolveOptions d;
   OptionSpec solver = table_option(
@@ -293,8 +295,6 @@ OptionSpec solver_option() {
       "how it is solved");
   return solver;
 }
-
-}  // namespace
 
 std::vector<OptionSpec> fem_option_specs() {
   return {mesh_option(),

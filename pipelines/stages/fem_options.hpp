@@ -11,7 +11,9 @@ namespace brachium::pipelines {
 /// All options of the stage, nested tables with their fields.
 std::vector<OptionSpec> fem_option_specs();
 
-/// The table `solver`; threads from the run.
+/// The table `solver`, shared by stages that solve continuum problems.
+OptionSpec solver_option();
+/// What it says; threads from the run.
 fem::SolveOptions solve_options(const Options& options, std::size_t threads);
 
 }  // namespace brachium::pipelines

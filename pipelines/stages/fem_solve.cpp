@@ -15,6 +15,7 @@
 #include "pipelines/report/text.hpp"
 #include "pipelines/stages/common.hpp"
 #include "pipelines/stages/fem_checkpoint.hpp"
+#include "pipelines/stages/fem_muscle_map.hpp"
 #include "pipelines/stages/fem_field_files.hpp"
 #include "pipelines/stages/fem_options.hpp"
 #include "pipelines/stages/fem_problem.hpp"
@@ -256,6 +257,7 @@ void add_fem_stages(Catalogue& catalogue) {
   spec.report = fem_chapter;
   spec.methods = fem_methods;
   catalogue.add(std::move(spec));
+  add_muscle_map_stage(catalogue);
 }
 
 }  // namespace brachium::pipelines

@@ -21,7 +21,7 @@ MuscleMap map_of(std::size_t n_theta, std::size_t n_alpha) {
     s.moment_n_m = -0.02 * F.value;
     s.moment_gradient = Gradient{-0.02 * F.dtheta, -0.02 * F.dalpha};
     s.vrla_m = 0.02;
-    s.stability = Stability::stable;
+    s.stability = StateStability::stable;
     map.states.push_back(s);
   }
   return map;
@@ -40,7 +40,7 @@ TEST(MuscleMap, GivesSamplesWithDerivativesWhereEveryOutputHasThem) {
 
 TEST(MuscleMap, LeavesOutUnstableAndFailedStatesByName) {
   MuscleMap map = map_of(5, 3);
-  map.states[4].stability = Stability::unstable;
+  map.states[4].stability = StateStability::unstable;
   map.failed.push_back({map.states[7].at, "J below 0"});
   map.states.erase(map.states.begin() + 7);
   const MapSamples samples = samples_of(map, {MapOutput::force});
