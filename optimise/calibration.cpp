@@ -174,7 +174,11 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
   result.subject.name = options.subject_name;
   result.subject.verdicts =
       verdicts({&result.parameters, result.x, result.x_uncorrected, result.excitation_error.bias,
-                &result.statistics, problem.gain_strength_pairs()});
+                &result.statistics,
+                profile_intervals(problem, result.x, result.statistics.covariance,
+                                  student_quantile(result.statistics.degrees_of_freedom),
+                                  options.problem.threads),
+                problem.gain_strength_pairs()});
   add_metrics(problem, result);
   std::string names;
   for (const CalibrationTrial& trial : trials) names += (names.empty() ? "" : ", ") + trial.name;
@@ -185,7 +189,7 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
   provenance["solver_message"] =
       result.summary.message().substr(0, result.summary.message().rfind(','));  // no times
   provenance["intervals"] = fmt::format(
-      "95 %, Student t with {:.0f} degrees of freedom; Newey-West sandwich{}",
+      "95 %, Student t with {:.0f} degrees of freedom; Newey-West sandwich{}, along each parameter's profile",
       result.statistics.degrees_of_freedom,
       options.excitation_noise.coefficient_of_variation != 0.0
           ? fmt::format(", corrected score with {} simulated data sets (CV of the excitations {:.3f})",

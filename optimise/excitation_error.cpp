@@ -75,28 +75,16 @@ std::vector<double> filtered_noise(const std::vector<double>& deviation, double 
   return out;
 }
 
-/// Excitations with one more dose of noise. Replicates 2i and 2i + 1 have opposite noise, so that what is odd
-/// in it cancels.
+/// Excitations with one more dose of noise, added where noise comes in: before the sensor noise is taken off.
+/// Replicates 2i and 2i + 1 have opposite noise, so that what is odd in it cancels.
 CalibrationProblem::Samples noisy_samples(const CalibrationProblem& problem, const ExcitationNoise& noise,
                                           std::size_t replicate) {
   CalibrationProblem::Samples out = problem.excitations();
   std::uint64_t stream = static_cast<std::uint64_t>(replicate / 2) << 20;
-  // e_observed^2 exceeds e^2 by the factor 1 + c^2 in the mean: the dose is that much smaller.
-  const double c =
-      noise.coefficient_of_variation / std::sqrt(1.0 + std::pow(noise.coefficient_of_variation, 2));
-  for (std::size_t t = 0; t < out.size(); ++t) {
-    for (auto& channel : out[t]) {
-      std::vector<double> deviation(channel.size());
-      for (std::size_t i = 0; i < channel.size(); ++i) {
-        const double e = std::abs(channel[i]), f = noise.floor;
-        deviation[i] = c * (f > 0.0 ? (e * e + f * f) / std::max(e, f) : e);
-      }
-      const auto eta =
-          filtered_noise(deviation, problem.excitation_rate_hz(t), noise.cutoff_hz, noise.seed, ++stream);
-      for (std::size_t i = 0; i < channel.size(); ++i)
-        channel[i] += (replicate % 2 == 0 ? 1.0 : -1.0) * eta[i];
-    }
-  }
+  for (std::size_t t = 0; t < out.size(); ++t)
+    for (auto& channel : out[t])
+      channel = with_envelope_noise(std::move(channel), problem.excitation_rate_hz(t), noise, ++stream,
+                                    replicate % 2 == 0 ? 1.0 : -1.0);
   return out;
 }
 
@@ -254,18 +242,42 @@ std::vector<double> envelope_noise(std::size_t count, double rate_hz, double cut
   return filtered_noise(std::vector<double>(count, 1.0), rate_hz, cutoff_hz, seed, stream);
 }
 
+std::vector<double> with_envelope_noise(std::vector<double> excitation, double rate_hz,
+                                        const ExcitationNoise& noise, std::uint64_t stream, double sign) {
+  const double c2 = noise.coefficient_of_variation * noise.coefficient_of_variation,
+               f2 = noise.overlapping_floor * noise.overlapping_floor, F = noise.subtracted_floor,
+               rest = std::pow(noise.rest_coefficient_of_variation * F * F, 2);
+  std::vector<double> deviation(excitation.size());
+  for (std::size_t i = 0; i < excitation.size(); ++i) {
+    const double e2 = excitation[i] * excitation[i], E2 = e2 + F * F;
+    if (!(E2 > 0.0)) continue;
+    const double relative = (c2 * e2 * (e2 + 2.0 * f2) + rest) / (E2 * E2);
+    // E_observed^2 exceeds E^2 by the factor 1 + relative in the mean: the dose is that much smaller.
+    deviation[i] = std::sqrt(E2 * relative / (1.0 + relative));
+  }
+  const std::vector<double> eta = filtered_noise(deviation, rate_hz, noise.cutoff_hz, noise.seed, stream);
+  for (std::size_t i = 0; i < excitation.size(); ++i)
+    excitation[i] = F > 0.0 ? std::hypot(excitation[i], F) + sign * eta[i] : excitation[i] + sign * eta[i];
+  return F > 0.0 ? without_noise_floor(std::move(excitation), F) : excitation;
+}
+
 ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& problem, const VectorXd& x,
                                                 const std::vector<bool>& fixed, const ExcitationNoise& noise,
                                                 std::size_t threads) {
   const Index n = x.size();
   if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) ||
-      !(noise.floor >= 0.0) || !(noise.coefficient_uncertainty >= 0.0) || noise.replicates < 4 ||
+      !(noise.overlapping_floor >= 0.0) || !(noise.subtracted_floor >= 0.0) ||
+      !(noise.rest_coefficient_of_variation >= 0.0) || !(noise.coefficient_uncertainty >= 0.0) || noise.replicates < 4 ||
       noise.steps < 1 || !(noise.cutoff_hz > 0.0))
     throw data::InputError("out-of-range", fmt::format("excitation noise: `coefficient_of_variation` {} >= "
-                                                       "0, `floor` {} >= 0, `cutoff_hz` {} > 0, `replicates` "
-                                                       "{} >= 4 and `steps` {} >= 1 are needed",
-                                                       noise.coefficient_of_variation, noise.floor,
-                                                       noise.cutoff_hz, noise.replicates, noise.steps));
+                                                       "0, `subtracted_floor` {} >= 0, `overlapping_floor` "
+                                                       "{} >= 0, `rest_coefficient_of_variation` {} >= 0, "
+                                                       "`cutoff_hz` {} > 0, `replicates` {} >= 4 and `steps` "
+                                                       "{} >= 1 are needed",
+                                                       noise.coefficient_of_variation, noise.subtracted_floor,
+                                                       noise.overlapping_floor,
+                                                       noise.rest_coefficient_of_variation, noise.cutoff_hz,
+                                                       noise.replicates, noise.steps));
   const auto& parameters = problem.parameters();
   const VectorXd scale = scale_of(parameters), lower = lower_of(parameters).cwiseQuotient(scale),
                  upper = upper_of(parameters).cwiseQuotient(scale);

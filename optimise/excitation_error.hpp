@@ -14,12 +14,12 @@
 /// with S the long-run covariance of the corrected scores. In a linear model this is the method of moments
 /// for errors in the regressors. bias = x_least_squares - x.
 ///
-/// | symbol | identifier                | unit | meaning |
-/// |--------|---------------------------|------|---------------------------------------------------------------|
-/// | c      | coefficient_of_variation  | 1    | of the envelope at constant effort | | f_c    | cutoff_hz |
-/// Hz   | -3 dB cut-off of the envelope's low-pass, all passes together | | k      | replicates | 1    |
-/// simulated data sets, in pairs of opposite noise               | | J'J, H | -                         | -
-/// | reliability: eigenvalues of H relative to J'J + P             |
+/// | symbol | identifier                | unit | meaning                                                      |
+/// |--------|---------------------------|------|--------------------------------------------------------------|
+/// | c      | coefficient_of_variation  | 1    | of the envelope at constant effort                           |
+/// | f_c    | cutoff_hz                 | Hz   | -3 dB cut-off of the envelope's low-pass, all passes together |
+/// | k      | replicates                | 1    | simulated data sets, in pairs of opposite noise              |
+/// | J'J, H | -                         | -    | reliability: eigenvalues of H relative to J'J + P            |
 
 #include <cstdint>
 #include <vector>
@@ -34,10 +34,12 @@ struct ExcitationNoise {
   /// How well c is known, relative: real EMG is not the Gaussian noise c is computed from. What a
   /// wrong c does to x, 2 (dx / d ln c^2) times this, is part of the covariance.
   double coefficient_uncertainty = 0.15;
-  /// Where sensor noise has been taken off in the mean square (without_noise_floor), what is left varies more
-  /// at low effort: sd(e) = c (e^2 + floor^2) / max(e, floor), with the effective floor in units of
-  /// excitation. 0: sd(e) = c e.
-  double floor = 0.0;
+  /// F, the envelope at rest that has been taken off in the mean square (without_noise_floor), in units of
+  /// excitation; 0: none. What is left, e, came of the envelope E = sqrt(e^2 + F^2), to which noise belongs:
+  ///   var(E) = (c^2 (e^4 + 2 e^2 f^2) + c_n^2 F^4) / E^2
+  double subtracted_floor = 0.0;
+  double overlapping_floor = 0.0;              ///< f, see overlapping_noise_floor
+  double rest_coefficient_of_variation = 0.0;  ///< c_n, of the envelope at rest
   double cutoff_hz = 6.0;
   int replicates = 20;  ///< simulated data sets
   int steps = 6;        ///< at most that many Newton steps on the corrected score
@@ -48,10 +50,16 @@ struct ExcitationNoise {
 /// rest.
 std::vector<double> without_noise_floor(std::vector<double> envelope, double floor);
 
-/// The floor that matters for ExcitationNoise: sensor noise adds to the envelope's fluctuation only as far as
-/// its spectrum overlaps that of the EMG, floor^2 (int P_e P_n / (int P_e int P_n)) / (int P_e^2 / (int
+/// Excitations with one more dose of that noise, sign times the noise named by (seed, stream):
+/// E = sqrt(e^2 + F^2), E + sign eta, F taken off again.
+std::vector<double> with_envelope_noise(std::vector<double> excitation, double rate_hz,
+                                        const ExcitationNoise& noise, std::uint64_t stream,
+                                        double sign = 1.0);
+
+/// f of ExcitationNoise: EMG and sensor noise beat with each other in the envelope only as far as their
+/// spectra overlap, f^2 = floor^2 (int P_e P_n / (int P_e int P_n)) / (int P_e^2 / (int
 /// P_e)^2). Spectra on one grid.
-double effective_noise_floor(double floor, const std::vector<double>& emg_power,
+double overlapping_noise_floor(double floor, const std::vector<double>& emg_power,
                              const std::vector<double>& noise_power);
 
 /// c of the linear envelope (full-wave rectified, zero-lag 4th-order Butterworth low-pass with -3 dB at

@@ -37,7 +37,6 @@ std::vector<std::pair<std::size_t, std::size_t>> exchangeable_pairs(
 std::vector<data::ParameterVerdict> verdicts(const VerdictInput& input) {
   const auto& parameters = *input.parameters;
   const FitStatistics& statistics = *input.statistics;
-  const double quantile = student_quantile(statistics.degrees_of_freedom);
   std::vector<data::ParameterVerdict> out;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
@@ -53,10 +52,10 @@ std::vector<data::ParameterVerdict> verdicts(const VerdictInput& input) {
     v.bias = input.bias[i];
     v.standard_error = statistics.standard_error[i];
     const double width = p.upper - p.lower;
-    const double half = v.standard_error > 0.0 ? quantile * v.standard_error : 0.0;
-    const bool finite = std::isfinite(half);
-    v.interval_lower = finite ? v.fitted - half : p.lower;
-    v.interval_upper = finite ? v.fitted + half : p.upper;
+    const double lower = input.intervals.lower[i], upper = input.intervals.upper[i];
+    const bool finite = std::isfinite(v.standard_error) && std::isfinite(upper - lower);
+    v.interval_lower = finite ? lower : p.lower;
+    v.interval_upper = finite ? upper : p.upper;
     const double solution = input.x_uncorrected[i];
     if (!finite) {
       v.verdict = "NOT IDENTIFIED";
@@ -66,10 +65,10 @@ std::vector<data::ParameterVerdict> verdicts(const VerdictInput& input) {
       v.verdict = "AT LOWER BOUND";
     } else if (p.upper - solution <= 1e-6 * width) {
       v.verdict = "AT UPPER BOUND";
-    } else if (!(2.0 * half < width)) {
+    } else if (!(upper - lower < width)) {
       v.verdict = "NOT IDENTIFIED";
       append(v.remark,
-             fmt::format("its 95 % interval ({} wide) is wider than its bounds", bounds_text(2.0 * half)));
+             fmt::format("its 95 % interval ({} wide) is wider than its bounds", bounds_text(upper - lower)));
     } else if (p.prior && statistics.prior_ratio[i] > 0.9) {
       v.verdict = "NOT IDENTIFIED";
     } else {

@@ -7,6 +7,7 @@
 
 #include "data/model/subject.hpp"
 #include "data/model/table.hpp"
+#include "optimise/intervals.hpp"
 #include "optimise/statistics.hpp"
 
 namespace brachium::optimise {
@@ -17,6 +18,7 @@ struct VerdictInput {
   Eigen::VectorXd x_uncorrected;  ///< the least-squares solution: bounds are judged here
   Eigen::VectorXd bias;           ///< 0 where not estimated
   const FitStatistics* statistics = nullptr;
+  Intervals intervals;
   std::vector<std::pair<std::size_t, std::size_t>>
       gain_strength;  ///< CalibrationProblem::gain_strength_pairs()
 };

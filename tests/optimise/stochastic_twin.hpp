@@ -9,6 +9,7 @@
 
 #include "emg/conditioning.hpp"
 #include "emg/synthetic_emg.hpp"
+#include "emg/welch.hpp"
 #include "optimise/calibration.hpp"
 #include "optimise/excitation_error.hpp"
 #include "optimise/twin.hpp"
@@ -72,32 +73,35 @@ inline std::vector<data::Signal> stochastic_envelopes(const data::Trial& truth,
   return out;
 }
 
-/// The law of these envelopes' noise: the electrode's spectrum, and white sensor noise, after the 30 Hz
-/// high-pass.
-inline ExcitationNoise stochastic_noise(const emg::SyntheticEmgOptions& o) {
+/// The law of these envelopes' noise, as a user gets it: from the spectrum of a maximal contraction (here five
+/// minutes of it) and white sensor noise, both after the 30 Hz high-pass.
+inline ExcitationNoise stochastic_noise(const emg::SyntheticEmgOptions& electrode) {
+  emg::SyntheticEmgOptions clean = electrode;
+  clean.snr_db.reset();
+  clean.seed = 988;
+  const emg::Periodogram spectrum = emg::welch(
+      emg::synthesise_emg(std::vector<double>(60000, 1.0), 200.0, clean).raw, clean.rate_hz, 0.5);
   std::vector<double> f, emg_power, noise_power;
   double emg_before = 0.0, emg_after = 0.0, noise_before = 0.0, noise_after = 0.0;
-  for (int i = 0; i < static_cast<int>(0.5 * o.rate_hz); ++i) {
-    const double x = i + 0.5, r = 30.0 / x * std::pow(std::sqrt(2.0) - 1.0, 0.25),
+  for (std::size_t i = 1; i < spectrum.density.size(); ++i) {
+    const double x = static_cast<double>(i) * spectrum.resolution_hz,
+                 r = 30.0 / x * std::pow(std::sqrt(2.0) - 1.0, 0.25),
                  high_pass = std::pow(1.0 + std::pow(r, 4), -2);
-    const bool in_band = x > o.band_low_hz && x < o.band_high_hz;
-    const double spectrum = in_band ? x * x /
-                                          ((x * x + o.spectrum_low_hz * o.spectrum_low_hz) *
-                                           std::pow(x * x + o.spectrum_high_hz * o.spectrum_high_hz, 2))
-                                    : 0.0;
     f.push_back(x);
-    emg_power.push_back(spectrum * high_pass);
+    emg_power.push_back(spectrum.density[i] * high_pass);
     noise_power.push_back(high_pass);
-    emg_before += spectrum;
-    emg_after += spectrum * high_pass;
+    emg_before += spectrum.density[i];
+    emg_after += spectrum.density[i] * high_pass;
     noise_before += 1.0;
     noise_after += high_pass;
   }
   ExcitationNoise noise;
   noise.coefficient_of_variation = envelope_coefficient_of_variation(f, emg_power, 6.0);
   const double floor =
-      std::pow(10.0, -*o.snr_db / 20.0) * std::sqrt(noise_after / noise_before * emg_before / emg_after);
-  noise.floor = effective_noise_floor(floor, emg_power, noise_power);
+      std::pow(10.0, -*electrode.snr_db / 20.0) * std::sqrt(noise_after / noise_before * emg_before / emg_after);
+  noise.subtracted_floor = floor;
+  noise.overlapping_floor = overlapping_noise_floor(floor, emg_power, noise_power);
+  noise.rest_coefficient_of_variation = envelope_coefficient_of_variation(f, noise_power, 6.0);
   noise.cutoff_hz = 6.0;
   return noise;
 }
