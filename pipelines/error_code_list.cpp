@@ -95,6 +95,9 @@ const std::vector<ErrorCode>& error_codes() {
       {"contact-shape",
        "A size or direction of a rigid body's shape is not usable: sizes are above 0, directions have a "
        "length."},
+      {"contradiction",
+       "Two entries that cannot both hold, such as a muscle in two groups or a body of two shapes; the "
+       "message says which to drop."},
       {"contradictory-conditions",
        "Two boundary conditions hold the same points in the same direction and ask different "
        "displacements of them. Free the component in one, or make both move alike."},
@@ -115,10 +118,10 @@ const std::vector<ErrorCode>& error_codes() {
       {"distorted-cells",
        "Cells of a mesh are too distorted: their Jacobian varies or their angles depart from right ones by "
        "more than the limit. Smooth the mesh there, or change the limit knowingly."},
+      {"duplicate-bone", "Two bones have one name. Bones are known by their names; rename one."},
       {"duplicate-column", "A file has two columns of one name; a mapping could mean either."},
       {"duplicate-condition",
        "Two boundary conditions have the same name, and phases move conditions by name."},
-      {"duplicate-bone", "Two bones have one name. Bones are known by their names; rename one."},
       {"duplicate-muscle", "Two muscles have one name. Muscles are known by their names; rename one."},
       {"duplicate-parameter", "A parameter is free twice: on its own and as part of a group."},
       {"duplicate-signal", "Two signals of one trial have one name. Give each a name of its own."},

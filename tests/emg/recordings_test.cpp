@@ -76,6 +76,7 @@ TEST(Recordings, ElbowCurlsAreGoodEnoughToUse) {
 
 TEST(Recordings, BothDetectorsFindTheSameBurstsOfTheBiceps) {
   BRACHIUM_NEEDS_SESSIONS();
+  BRACHIUM_NEEDS_SCIPY();
   if (!tests::python_has("h5py")) GTEST_SKIP() << "needs h5py";
   std::vector<double> x = plux("emg_bursts.h5");
   const std::span<double> channel(x);

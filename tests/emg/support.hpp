@@ -12,6 +12,7 @@
 
 #include "data/model/error.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/python.hpp"
 
 namespace brachium::tests {
 
@@ -44,10 +45,6 @@ inline std::vector<double> read_doubles(const std::filesystem::path& file) {
   in.seekg(0);
   in.read(reinterpret_cast<char*>(x.data()), static_cast<std::streamsize>(x.size() * sizeof(double)));
   return x;
-}
-
-inline bool python_has(const std::string& modules) {
-  return std::system(("/usr/bin/python3 -c 'import " + modules + "' 2>/dev/null").c_str()) == 0;
 }
 
 inline std::string script() { return (source_dir() / "tests/emg/scipy_reference.py").string(); }
@@ -107,7 +104,3 @@ std::string input_error(Action action) {
 }
 
 }  // namespace brachium::tests
-
-/// Skips the test, with the reason, where scipy is not installed.
-#define BRACHIUM_NEEDS_SCIPY() \
-  if (!brachium::tests::python_has("scipy")) GTEST_SKIP() << "needs /usr/bin/python3 with scipy"

@@ -3,7 +3,7 @@
 packages_build=(build-essential cmake ninja-build libeigen3-dev libnlopt-dev libnlopt-cxx-dev libhdf5-dev libgsl-dev
                 libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libpugixml-dev zlib1g-dev
                 libsuitesparse-dev libmetis-dev libopenblas-dev)
-packages_test=(libgtest-dev libgmock-dev python3 python3-numpy python3-h5py python3-xarray python3-h5netcdf)
+packages_test=(libgtest-dev libgmock-dev python3 python3-numpy python3-scipy python3-h5py python3-xarray python3-h5netcdf)
 
 # need_packages GROUP...: installs the missing packages of these groups, or says which to ask for.
 need_packages() {

@@ -13,6 +13,7 @@
 #include "data/io/scene_file.hpp"
 #include "data/limb/muscle_path.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/python.hpp"
 
 namespace {
 using namespace brachium;
@@ -100,6 +101,7 @@ struct Script {
 
 TEST(ElbowGeometry, IsReproducedFromArm26AndAChangedCoefficientIsNoticed) {
   BRACHIUM_NEEDS_SESSIONS();
+  BRACHIUM_NEEDS_SCIPY();
   const Script script;
   EXPECT_EQ(script(fmt::format("--check '{}' '{}'", scene_path("elbow.toml").string(),
                                scene_path("elbow_twin.toml").string())),
@@ -117,6 +119,7 @@ TEST(ElbowGeometry, IsReproducedFromArm26AndAChangedCoefficientIsNoticed) {
 
 TEST(ElbowGeometry, ComputesTheLengthsAndTheElbowMomentThatOpenSimComputes) {
   BRACHIUM_NEEDS_SESSIONS();
+  BRACHIUM_NEEDS_SCIPY();
   const Script script;
   EXPECT_EQ(script(fmt::format("--validate '{}'", (script.model / "OutputReference").string())), 0);
 }
