@@ -1,5 +1,4 @@
-/// optimise.scenario: the equivalent static system of a joint with given muscle forces, and questions asked
-/// of it.
+/// optimise.scenario: questions asked of the equivalent static systems of a joint.
 
 #include "optimise/scenario.hpp"
 
@@ -11,10 +10,8 @@
 #include <limits>
 #include <numbers>
 
-#include "fem/surrogate/surrogate_model.hpp"
-#include "fem/surrogate/tensor.hpp"
-#include "optimise/scenario_signs.hpp"
 #include "pipelines/stages/common.hpp"
+#include "pipelines/stages/fem_quantities.hpp"
 #include "pipelines/stages/optimise_scenario.hpp"
 
 namespace brachium::pipelines {
@@ -22,72 +19,6 @@ namespace {
 
 constexpr double deg = std::numbers::pi / 180.0;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-using optimise::thesis::Action;
-
-// ---------------------------------------------------------------- the system
-
-/// Σ c_k theta^k in mm, theta in degrees, as metres over radians.
-data::CurveValue lever(const std::vector<double>& coefficients, double q) {
-  const double t = q / deg;
-  data::CurveValue v;
-  for (std::size_t k = coefficients.size(); k-- > 0;) {
-    v.slope = v.slope * t + v.value;
-    v.value = v.value * t + coefficients[k];
-  }
-  return {1e-3 * v.value, 1e-3 * v.slope / deg};
-}
-
-fem::SurrogateMuscle muscle_of(const Options& o, const std::string& curve) {
-  const std::string& name = o.text("name");
-  const std::vector<double>&angle = o.numbers("angle_deg"), &activation = o.numbers("activation"),
-        &force = o.numbers("force_N");
-  if (force.size() != angle.size() * activation.size()) {
-    throw data::InputError("wrong-size",
-                           fmt::format("muscle `{}` has {} forces for {} angles and {} activations", name,
-                                       force.size(), angle.size(), activation.size()),
-                           "give the forces at all angles for the first activation, then for the next");
-  }
-  fem::SampleSet set{{"force_n"}, {}};
-  for (std::size_t j = 0; j < activation.size(); ++j) {
-    for (std::size_t i = 0; i < angle.size(); ++i)
-      set.samples.push_back(
-          {{angle[i] * deg, activation[j]}, Eigen::VectorXd::Constant(1, force[j * angle.size() + i])});
-  }
-  fem::TensorOptions options;
-  options.theta = curve == "monotone" ? fem::ThetaCurve::monotone
-                  : curve == "linear" ? fem::ThetaCurve::linear
-                                      : fem::ThetaCurve::cubic;
-  options.alpha = activation.size() > 2 ? fem::AlphaCurve::cubic : fem::AlphaCurve::linear;
-  const Action action = o.text("action") == "flexor" ? Action::flexor : Action::extensor;
-  const std::vector<double> coefficients = o.numbers("lever_arm_mm");
-  return {name, std::make_shared<fem::Surrogate>(fem::tensor_spline(fem::as_grid(set), options)), "force_n",
-          fem::ArmOfAngle{[action, coefficients](double q) {
-            return optimise::thesis::moment_arm(action, lever(coefficients, q));
-          }}};
-}
-
-fem::SurrogateModel model_of(const Options& options) {
-  std::vector<fem::SurrogateMuscle> muscles;
-  for (const Options& o : options.tables("muscle"))
-    muscles.push_back(muscle_of(o, options.text("force_curve")));
-  return fem::SurrogateModel("angle", std::move(muscles));
-}
-
-optimise::StaticSystem system_of(const Options& options, const fem::SurrogateModel& model) {
-  optimise::StaticSystem system;
-  system.model = &model;
-  if (const auto arm = options.maybe_number("load_arm_mm")) {
-    const double metres = 1e-3 * *arm;
-    system.load_arm = [metres](double q) {
-      return optimise::thesis::load_arm({metres * std::sin(q), metres * std::cos(q)});
-    };
-  }
-  const data::Domain range = model.angles();
-  const auto lower = options.maybe_number("lower_deg"), upper = options.maybe_number("upper_deg");
-  system.lower_rad = lower ? *lower * deg : range.lower;
-  system.upper_rad = upper ? *upper * deg : range.upper;
-  return system;
-}
 
 Eigen::VectorXd activations(const Options& o, std::size_t muscles, const std::string& what) {
   const std::vector<double>& a = o.numbers("activation");
@@ -306,19 +237,44 @@ void histories(const Study& s, StageOutput& out) {
 
 }  // namespace
 
+namespace {
+
+/// A table's rows under the name of their system.
+void append_under(const std::string& system, data::Table rows, data::Table& all) {
+  rows.columns.insert(rows.columns.begin(), {"system", "", std::vector<std::string>(rows.rows(), system)});
+  append_rows(all, rows);
+}
+
+}  // namespace
+
 void run_scenarios(const StageContext& context, StageOutput& out) {
-  const fem::SurrogateModel model = model_of(*context.options);
-  Study study{*context.options, model, system_of(*context.options, model), {}, model.muscles()};
-  study.scenario.relative_tolerance = context.options->number("relative_tolerance");
-  out.tables["forces"] = forces(study);
-  const Found found = equilibria(study, out);
-  const std::size_t not_held = positions(study, out);
-  histories(study, out);
-  out.attributes["rung"] = model.traits().rung;
+  std::vector<std::string> names;
+  Found found;
+  std::size_t not_held = 0;
+  const std::vector<ScenarioSystem> systems = scenario_systems(context);
+  for (const ScenarioSystem& system : systems) {
+    Study study{*context.options, *system.model, system.system, {}, system.model->muscles()};
+    study.scenario.relative_tolerance = context.options->number("relative_tolerance");
+    StageOutput one;
+    one.tables["forces"] = forces(study);
+    const Found here = equilibria(study, one);
+    found.equilibria += here.equilibria;
+    found.without += here.without;
+    found.unstable += here.unstable;
+    not_held += positions(study, one);
+    histories(study, one);
+    for (auto& [name, table] : one.tables) append_under(system.name, std::move(table), out.tables[name]);
+    names.push_back(system.name);
+    if (context.progress)
+      context.progress(static_cast<double>(names.size()) / static_cast<double>(systems.size()), system.name);
+  }
+  out.attributes["rung"] = systems.front().model->traits().rung;
+  out.attributes["systems"] = fmt::format("{}", fmt::join(names, "\n"));
   out.attributes["signs"] = "flexion positive; a load above 0 extends";
   out.attributes["verdict"] = fmt::format(
-      "{} equilibria ({} unstable); without one in range: {} of activations and load, {} of angles",
-      found.equilibria, found.unstable, found.without, not_held);
+      "{}{} equilibria ({} unstable); without one in range: {} of activations and load, {} of angles",
+      systems.size() > 1 ? fmt::format("{} systems: ", systems.size()) : "", found.equilibria, found.unstable,
+      found.without, not_held);
   out.attributes["verdict_tone"] = "plain";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "pipelines/stages/common.hpp"
 #include "pipelines/stages/optimise_scenario.hpp"
@@ -181,22 +182,76 @@ report::GridOptions grid_options() {
   return grid;
 }
 
-}  // namespace
+// Rows of one system, without its name.
+data::Table of_system(const data::Table& table, const std::string& system) {
+  data::Table out{table.title, {}};
+  const std::vector<std::size_t> rows = rows_of(table, "system", system);
+  for (const data::Column& c : table.columns) {
+    if (c.name == "system") continue;
+    out.columns.push_back({c.name, c.unit, c.values});
+    std::visit(
+        [&](auto& values) {
+          std::decay_t<decltype(values)> kept;
+          for (const std::size_t i : rows) kept.push_back(values[i]);
+          values = std::move(kept);
+        },
+        out.columns.back().values);
+  }
+  return out;
+}
 
-void fill_scenario_report(const ReportContext& context, report::Section& section) {
-  const StageData& output = *context.output;
-  const auto table = [&](const std::string& name) -> const data::Table& { return output.tables.at(name); };
+// What a row of `equilibria` or `positions` answers, in a cell.
+report::Cell answer(const data::Table& table, const std::vector<std::size_t>& rows) {
+  std::string text;
+  report::Tone tone = report::Tone::plain;
+  const bool angles = !table.numbers("angle_deg").empty() && [&] {
+    return std::any_of(table.columns.begin(), table.columns.end(),
+                       [](const data::Column& c) { return c.name == "stiffness_N_m_per_rad"; });
+  }();
+  for (const std::size_t i : rows) {
+    const std::string& outcome = table.texts("outcome")[i];
+    if (!text.empty()) text += "; ";
+    if (outcome == "none in range") {
+      text += angles ? "none" : fmt::format("none ({:+.2f} N m left)", table.numbers("remaining_moment_N_m")[i]);
+      tone = report::Tone::warning;
+    } else if (angles) {
+      text += fmt::format("{:.1f}{}", table.numbers("angle_deg")[i], outcome == "unstable" ? " unstable" : "");
+    } else {
+      text += fmt::format("{:.3f}", table.numbers("activation")[i]);
+    }
+  }
+  return report::make_text_cell(text, tone);
+}
+
+// One row a case, one column a system.
+report::Grid side_by_side(const data::Table& table, const std::string& caption) {
+  report::Grid grid;
+  grid.caption = caption;
+  grid.header = {"case"};
+  const std::vector<std::string> systems = names_in(table, "system");
+  grid.header.insert(grid.header.end(), systems.begin(), systems.end());
+  for (const std::string& name : names_in(table, "case")) {
+    std::vector<report::Cell> cells{report::make_text_cell(name)};
+    for (const std::string& system : systems) {
+      std::vector<std::size_t> rows;
+      for (const std::size_t i : rows_of(table, "case", name)) {
+        if (table.texts("system")[i] == system) rows.push_back(i);
+      }
+      cells.push_back(answer(table, rows));
+    }
+    grid.rows.push_back(std::move(cells));
+  }
+  return grid;
+}
+
+void fill_system(const std::map<std::string, data::Table>& tables, report::Section& section) {
+  const auto table = [&](const std::string& name) -> const data::Table& { return tables.at(name); };
   report::GridOptions grid = grid_options();
-  for (const Options& m : context.options->tables("muscle")) {
-    const std::string name = m.text("name");
+  for (const std::string& name : names_in(table("forces"), "muscle")) {
     grid.names["activation_" + name] = name + ": activation";
     grid.names["dangle_dactivation_" + name + "_deg"] = "dangle/dactivation " + name;
     grid.column_digits["dangle_dactivation_" + name + "_deg"] = 3;
   }
-  section.title += ": static equilibrium";
-  section.blocks.push_back(
-      report::Paragraph{"Forces as given, between the tables' angles and activations by interpolation; "
-                        "moment arms are positive for flexors. A load above 0 extends."});
   section.blocks.push_back(force_plots(table("forces")));
   if (table("equilibria").rows() > 0) {
     section.blocks.push_back(
@@ -219,6 +274,56 @@ void fill_scenario_report(const ReportContext& context, report::Section& section
     section.blocks.push_back(report::Paragraph{"Force-driven: where the load takes the joint."});
     section.blocks.push_back(history_plots(table("histories")));
     if (table("events").rows() > 0) section.blocks.push_back(report::make_grid(table("events"), grid));
+  }
+}
+
+// Angles over time of one history, a line a system.
+report::PlotRow histories_together(const data::Table& table) {
+  report::PlotRow row;
+  row.min_width_px = 420.0;
+  for (const std::string& name : names_in(table, "case")) {
+    Plot plot{name, "time [s]", "angle [deg]"};
+    for (const std::string& system : names_in(table, "system")) {
+      Series series{system, {}, {}};
+      for (const std::size_t i : rows_of(table, "case", name)) {
+        if (table.texts("system")[i] != system) continue;
+        series.x.push_back(table.numbers("time_s")[i]);
+        series.y.push_back(table.numbers("angle_deg")[i]);
+      }
+      plot.series.push_back(std::move(series));
+    }
+    row.plots.push_back(std::move(plot));
+  }
+  return row;
+}
+
+}  // namespace
+
+void fill_scenario_report(const ReportContext& context, report::Section& section) {
+  const StageData& output = *context.output;
+  section.title += ": static equilibrium";
+  section.blocks.push_back(
+      report::Paragraph{"Forces between the states that were given or solved by interpolation; moment arms are "
+                        "positive for flexors. A load above 0 extends."});
+  const std::vector<std::string> systems = names_in(output.tables.at("forces"), "system");
+  if (systems.size() > 1) {
+    if (output.tables.at("equilibria").rows() > 0)
+      section.blocks.push_back(side_by_side(output.tables.at("equilibria"), "Equilibrium angles [deg], all roots"));
+    if (output.tables.at("positions").rows() > 0)
+      section.blocks.push_back(side_by_side(output.tables.at("positions"), "Activations that hold an angle"));
+    if (output.tables.at("histories").rows() > 0)
+      section.blocks.push_back(histories_together(output.tables.at("histories")));
+  }
+  for (const std::string& system : systems) {
+    std::map<std::string, data::Table> own;
+    for (const auto& [name, table] : output.tables) own[name] = of_system(table, system);
+    if (systems.size() == 1) {
+      fill_system(own, section);
+    } else {
+      report::Section part;
+      fill_system(own, part);
+      section.blocks.push_back(report::Details{system, {part}});
+    }
   }
 }
 

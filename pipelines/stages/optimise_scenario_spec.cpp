@@ -1,6 +1,7 @@
 /// What optimise.scenario is asked with.
 
 #include "pipelines/stages/common.hpp"
+#include "pipelines/stages/fem_limb_map.hpp"
 #include "pipelines/stages/optimise_common.hpp"
 #include "pipelines/stages/optimise_scenario.hpp"
 
@@ -35,10 +36,11 @@ void add_optimise_scenario(Catalogue& catalogue) {
   StageSpec spec;
   spec.name = "optimise.scenario";
   spec.summary =
-      "static equilibrium of a joint with given muscle forces: angles, activations, load histories";
+      "static equilibrium of a joint with given or mapped muscle forces: angles, activations, load histories";
   spec.doc =
-      "The equivalent static system of a joint: muscle forces over angle and activation are given as a "
-      "table, lever arms as polynomials of the angle, and a load acts on the forearm. "
+      "The equivalent static system of a joint: muscle forces over angle and activation and their lever arms are given "
+      "as tables and polynomials of the angle, or come from muscle maps, and a load acts on the forearm. With several "
+      "maps or lever arms the same questions are asked of each system, and answers stand side by side. "
       "Three questions are asked of it. Activation-driven (`equilibrium`): all angles at which given "
       "activations hold a load, with their stability. Position-driven (`position`): the activation "
       "of one muscle that holds an angle. Force-driven (`history`): where a load history takes the joint, "
@@ -56,8 +58,11 @@ void add_optimise_scenario(Catalogue& catalogue) {
   starts.fallback = std::vector<double>{80.0, 40.0, 120.0};
   const OptionSpec name = text_option("name", "", "name of the case; its number where absent");
   const OptionSpec load = number_option("load_N", "N", 0.0, {}, "load on the forearm, above 0 extends");
+  OptionSpec arms = texts_option("lever_arm", {"virtual_work"}, "of the maps' muscles, one system each");
+  arms.allowed = moment_methods();
+  spec.inputs = {{"map", PortType::tables, "muscle maps instead of `muscle` (fem.muscle_map)", true, true}};
   spec.options = {
-      required(tables_of(
+      tables_of(
           "muscle",
           {required(text_option("name", "", "name of the muscle")),
            required(
@@ -67,12 +72,14 @@ void add_optimise_scenario(Catalogue& catalogue) {
            numbers_of("lever_arm_mm", "mm",
                       "coefficients of the lever arm, l = c0 + c1 theta + c2 theta^2 + ..., theta in "
                       "degrees; above 0")},
-          "the muscles")),
+          "the muscles, where no map is wired"),
+      arms,
       choice_option("force_curve", "monotone", {"monotone", "cubic", "linear"},
                     "interpolation over the angle; over the activation linear, cubic from 3 activations on"),
       optional_number(
           "load_arm_mm", "mm", above(0),
-          "distance of the load from the joint: its lever arm is this times the sine of the angle"),
+          "distance of the load from the joint: its lever arm is this times the sine of the angle; absent: that of the "
+          "maps' limb"),
       optional_number("lower_deg", "deg", {}, "range of angles; absent: that of the tables"),
       optional_number("upper_deg", "deg", {}, "range of angles; absent: that of the tables"),
       tables_of("equilibrium", {name, activation, load}, "activation-driven cases"),

@@ -182,6 +182,36 @@ TEST(MuscleMapStage, ScalesTheLimbToTheSubject) {
   EXPECT_NEAR(map.tables.at("muscles").numbers("max_stress_Pa")[0], t.numbers("max_stress_Pa")[0], 1e-9);
 }
 
+TEST(MuscleMapStage, IsAskedForEquilibriaByEachLeverArm) {
+  const std::string cases = "equilibrium = [{ name = \"both\", activation = [0.4, 0.3] }]\nlever_arm = [\"virtual_work\", \"vrla\"]";
+  const StageData found = run("optimise.scenario", cases, {{"map", {&small_map()}}});
+  const data::Table& t = found.tables.at("equilibria");
+  ASSERT_EQ(t.rows(), 2u);
+  EXPECT_EQ(t.texts("system")[0], "map: virtual work");
+  EXPECT_EQ(t.texts("system")[1], "map: resultant (VRLA)");
+  const LimbMap map = limb_map_of(small_map());
+  for (std::size_t k = 0; k < 2; ++k) {
+    const fem::SurrogateModel model = model_of(map, k == 0 ? "virtual_work" : "vrla", "elbow");
+    limb::Evaluation e;
+    model.evaluate(Eigen::VectorXd::Constant(1, t.numbers("angle_deg")[k] * degree), Eigen::VectorXd::Zero(1),
+                   Eigen::Vector2d(0.4, 0.3), {}, e);
+    EXPECT_LT(std::abs(e.moment(0)), 1e-6 * std::abs(e.moment_arm(0, 0) * e.force(0)));
+    EXPECT_EQ(t.texts("outcome")[k], e.dmoment_dq(0, 0) < 0.0 ? "stable" : "unstable");
+  }
+  EXPECT_GT(std::abs(t.numbers("angle_deg")[0] - t.numbers("angle_deg")[1]), 0.1) << "two systems, not one twice";
+}
+
+TEST(MuscleMapStage, ScenariosTakeForcesFromOnePlaceOnly) {
+  const std::string given = "muscle = [{ name = \"a\", action = \"flexor\", angle_deg = [10, 90], force_N = [1, 2, 3, 4], lever_arm_mm = [30.0] }]";
+  EXPECT_THAT(error_of([&] { run("optimise.scenario", given, {{"map", {&small_map()}}}); }),
+              StartsWith("error[contradiction]: forces come from `muscle` or from the input `map`, not from both\n"));
+  EXPECT_THAT(error_of([&] { run("optimise.scenario", ""); }),
+              StartsWith("error[missing-key]: there are no muscles: neither `muscle` nor the input `map`\n"));
+  const StageData other = session_data({});
+  EXPECT_THAT(error_of([&] { run("optimise.scenario", "", {{"map", {&other}}}); }),
+              StartsWith("error[not-a-muscle-map]: stage `session` leaves no muscle map\n"));
+}
+
 std::string told(const std::string& more) {
   return error_of([&] { run("fem.muscle_map", coarse(more)); });
 }
