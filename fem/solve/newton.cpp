@@ -15,31 +15,20 @@ constexpr double least_part = 1e-3;
 
 }  // namespace
 
-NewtonSettings newton_settings(const SolveOptions& options) {
-  NewtonSettings s;
-  s.relative_residual = options.relative_residual;
-  s.relative_step = options.relative_step;
-  s.max_iterations = options.max_iterations;
-  s.max_chord_iterations = options.max_chord_iterations;
-  s.chord = options.chord;
-  s.volume_tolerance = options.volume_tolerance;
-  s.max_augmentations = options.max_augmentations;
-  return s;
-}
-
 double Newton::step_scale(const Configuration& configuration) const {
   const auto u = equations_.displacements(configuration.dofs);
   return std::max(u.norm(), 1e-3 * equations_.cell_size_m() * std::sqrt(static_cast<double>(u.size())));
 }
 
 bool Newton::arrived(const Point& p) const {
-  if (equations_.augmented() && p.evaluation.sums.worst_volume > settings_.volume_tolerance) return false;
+  if (augmenting() && p.evaluation.sums.worst_volume > settings_.volume_tolerance) return false;
   return p.evaluation.relative <= std::max(settings_.relative_residual, p.evaluation.rounding);
 }
 
 bool Newton::chord_pays(const Point& p, double contraction) const {
   if (!settings_.chord || !(contraction < chord_limit) || outcome_.chord >= settings_.max_chord_iterations)
     return false;
+  if (augmenting() && contraction <= 1.1 * fresh_contraction_) return true;
   const double left = std::log(std::min(settings_.relative_residual / p.evaluation.relative, 0.5)) /
                       std::log(std::max(contraction, 1e-12));
   return left <= 2.0 * factor_.cost_ratio();
@@ -49,7 +38,9 @@ bool Newton::chord_pays(const Point& p, double contraction) const {
 void Newton::set_pressure(Point& p, Eigen::MatrixXd pressure) {
   const Eigen::MatrixXd volumetric = equations_.volumetric_pressure(p.configuration);
   p.pressure = std::move(pressure);
-  p.excess = equations_.augmented() ? volumetric : volumetric - p.pressure;
+  p.excess = volumetric;
+  if (!augmenting()) p.excess -= p.pressure;
+  if (multiplier_.size() > 0) p.excess += multiplier_;
   p.configuration.multiplier = p.pressure - volumetric;
 }
 
@@ -115,7 +106,7 @@ void Newton::record(const std::string& kind, const Point& from, const Point& to,
   IterationRecord r;
   r.step = step;
   r.iteration = outcome_.newton + outcome_.chord;
-  r.kind = settings_.prefix + kind;
+  r.kind = prefix_ + kind;
   r.residual_norm = to.evaluation.residual_norm;
   r.relative_residual = to.evaluation.relative;
   r.step_norm = from.length;
@@ -130,9 +121,12 @@ void Newton::record(const std::string& kind, const Point& from, const Point& to,
 NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, int step,
                           std::vector<IterationRecord>& records, Eigen::MatrixXd pressure) {
   outcome_ = {};
+  fresh_contraction_ = 0.0;
   secant_ = Secant(equations_.displacement_unknowns());
   Point now;
   now.configuration = configuration;
+  multiplier_.resize(0, 0);
+  if (!augmenting()) multiplier_ = configuration.multiplier;
   if (equations_.condensed()) {
     if (pressure.size() == 0) pressure = equations_.assembly().pressures(now.configuration);
     set_pressure(now, std::move(pressure));
@@ -142,9 +136,10 @@ NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, i
     outcome_.converged = reason.empty();
     outcome_.reason = reason;
     configuration = std::move(now.configuration);
-    if (equations_.condensed() && !equations_.augmented()) {
-      configuration.multiplier.resize(0, 0);
-      if (outcome_.converged) now.evaluation = equations_.evaluate(configuration, load);  // at U'(θ) itself
+    if (equations_.condensed() && !augmenting()) {
+      configuration.multiplier = multiplier_;
+      if (outcome_.converged)
+        now.evaluation = equations_.evaluate(configuration, load);  // at U'(θ) + m itself
     }
     outcome_.last = std::move(now.evaluation);
     return std::move(outcome_);
@@ -183,8 +178,7 @@ NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, i
       }
     } else {
       ++outcome_.chord;
-      const Eigen::VectorXd direction =
-          equations_.augmented() ? now.correction : secant_.step(now.correction);
+      const Eigen::VectorXd direction = augmenting() ? now.correction : secant_.step(now.correction);
       next = move(now, direction, 1.0, load);
       const bool nearer = next.evaluation.valid() && (next.length < now.length || arrived(next));
       if (!nearer) next.part = 0.0;
@@ -196,8 +190,11 @@ NewtonOutcome Newton::run(Configuration& configuration, const LoadPoint& load, i
       secant_.taken(direction);
     }
     const double contraction = next.length / now.length;
-    if (equations_.augmented()) ++outcome_.augmentations;
-    if (fresh && next.part == 1.0) secant_.taken(now.correction);
+    if (augmenting()) ++outcome_.augmentations;
+    if (fresh && next.part == 1.0) {
+      secant_.taken(now.correction);
+      fresh_contraction_ = contraction;
+    }
     stalled = contraction > 0.99 ? stalled + 1 : 0;
     keep = next.part == 1.0 && (chord_pays(next, contraction) || (arrived(next) && contraction < 1.0));
     fresh = false;

@@ -9,6 +9,8 @@
 /// Kind of iteration. A chord iteration costs a residual and a back-substitution, a Newton iteration r times
 /// that (TangentFactor::cost_ratio). At the contraction Θ of the present factor, n = log(tolerance/|R|)/log Θ
 /// iterations are left; a new factor about halves that number. The factor is kept while Θ < 0.7 and n <= 2 r.
+/// Where multipliers set the pace (augmented Lagrange) a new factor changes nothing: it is kept while Θ < 0.7
+/// is what the last new factor has reached.
 ///
 /// Damping. A step with a new factor is taken whole where Θ <= 3/4; else λ is the damping that the last trial
 /// proposes, λ' = λ^2 |d| / (2 |d(u + λ d) - (1 - λ) d|) within [λ/10, λ/2], until Θ <= 1 - λ/4.
@@ -18,7 +20,8 @@
 /// of the factor B = Dθ and the matrix K + B' U'' B of the condensed system,
 ///   Δp = U'(θ(u)) + m - p,   d = -(K + B' U'' B)^-1 (R + B' Δp),   p <- p + λ (Δp + U'' B d).
 /// The multiplier m is 0 where the bulk modulus is finite, and p itself where it is infinite (augmented
-/// Lagrange: the change of volume θ - 1 goes to zero with p, at no factorisation of its own). R at U'(θ(u))
+/// Lagrange: the change of volume θ - 1 goes to zero with p, at no factorisation of its own; it contracts by
+/// stiffness over penalty). With `augment` off, m stays what the configuration brings along. R at U'(θ(u))
 /// instead, as a condensed body is often solved, has the same solution but multiplies every curvature of θ by
 /// the bulk modulus on the way there. (Simo, Taylor & Pister 1985, doi:10.1016/0045-7825(85)90033-7; Wriggers
 /// 2008, doi:10.1007/978-3-540-71001-1, ch. 10)
@@ -36,17 +39,6 @@
 
 namespace brachium::fem {
 
-struct NewtonSettings {
-  double relative_residual = 1e-8, relative_step = 1e-6;
-  int max_iterations = 20, max_chord_iterations = 60;
-  bool chord = true;
-  double volume_tolerance = 1e-8;
-  int max_augmentations = 30;
-  std::string prefix;  ///< of the kinds in the records
-};
-
-NewtonSettings newton_settings(const SolveOptions& options);
-
 struct NewtonOutcome {
   bool converged = false;
   std::string reason;  ///< why not
@@ -56,8 +48,10 @@ struct NewtonOutcome {
 
 class Newton {
  public:
-  Newton(Equations& equations, TangentFactor& factor, const NewtonSettings& settings)
-      : equations_(equations), factor_(factor), settings_(settings) {}
+  /// `prefix`: of the kinds in the records.
+  Newton(Equations& equations, TangentFactor& factor, const NewtonSettings& settings,
+         const std::string& prefix = "")
+      : equations_(equations), factor_(factor), settings_(settings), prefix_(prefix) {}
 
   /// Moves the free unknowns (and multipliers) of `configuration`, whose held components are imposed already.
   /// `pressure`: of condensed formulations, as predicted; empty: U'(θ) and the configuration's multiplier.
@@ -77,9 +71,13 @@ class Newton {
   Equations& equations_;
   TangentFactor& factor_;
   NewtonSettings settings_;
+  std::string prefix_;
+  Eigen::MatrixXd multiplier_;  ///< m that stays; empty: 0, or p
   Secant secant_;
+  double fresh_contraction_ = 0.0;  ///< Θ of the last whole step with a new factor
   NewtonOutcome outcome_;
 
+  bool augmenting() const { return settings_.augment && equations_.augmented(); }
   double step_scale(const Configuration& configuration) const;
   bool arrived(const Point& p) const;
   bool chord_pays(const Point& p, double contraction) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "fem/solve/growing_mode.hpp"
 #include "fem/solve/predictor.hpp"
 #include "fem/solve/stability.hpp"
 
@@ -23,13 +24,9 @@ Configuration at_rest(Configuration c) {
 }  // namespace
 
 bool Relaxer::disturb(Configuration& configuration, const LoadPoint& load) {
-  const Configuration here = at_rest(configuration);
-  if (!factor_.make(equations_, here, load).empty()) return false;
-  if (const auto mode = negative_mode(equations_, factor_)) {
-    equations_.add(*mode, 0.01 * equations_.cell_size_m(), configuration.dofs);
-    return true;
-  }
-  return false;
+  const auto mode = growing_mode(equations_, factor_, at_rest(configuration), load);
+  if (mode) equations_.add(*mode, 0.01 * equations_.cell_size_m(), configuration.dofs);
+  return mode.has_value();
 }
 
 bool Relaxer::move_held(Configuration& configuration, const LoadPoint& from, const LoadPoint& to,
@@ -56,17 +53,20 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
   }
   Configuration now = at_rest(configuration);
   if (disturbed) {
-    disturb(now, to);
+    if (!disturb(now, to)) {
+      result.reason = "no direction was found along which the energy falls";
+      return result;
+    }
   } else if (!move_held(now, from, to, 1.0 / first_dt)) {
     result.reason = "the held parts of the body could not be moved to the new load without inverting a cell";
     return result;
   }
-  NewtonSettings flow = newton_settings(options_);
+  NewtonSettings flow = options_;
   flow.relative_residual = 1e-5;
   flow.relative_step = 1e-3;
   flow.max_iterations = 6;
   flow.max_chord_iterations = 12;
-  flow.prefix = "relax ";
+  flow.augment = false;  // once a step instead: inside, viscosity over penalty would slow Newton down
   double dt = first_dt, growth = 2.0;
   int finishes = 0, next_finish = 0;
   std::string last_trouble;
@@ -82,7 +82,7 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
     next.inverse_dt = 1.0 / dt;
     next.viscosity_pa_s = equations_.stiffness_pa();
     factor_.forget();
-    NewtonOutcome outcome = Newton(equations_, factor_, flow).run(next, to, step, records);
+    NewtonOutcome outcome = Newton(equations_, factor_, flow, "relax ").run(next, to, step, records);
     count(outcome);
     const auto modes = factor_.negative_modes();
     if (!outcome.converged || (modes && modes->count > 0)) {
@@ -101,6 +101,10 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
     const Evaluation still = equations_.evaluate(probe, to);
     result.dissipated_energy += -still.residual.dot(equations_.unknowns().restrict(next.dofs - now.dofs));
     now = std::move(next);
+    if (equations_.augmented()) {
+      now.multiplier = equations_.assembly().pressures(now);
+      ++result.augmentations;
+    }
     const bool slow = dt >= 1e3 && still.relative <= 1e-2;
     // A passage near a vanished equilibrium looks like rest: what the flow is solved to follows the residual
     // it flows by.
@@ -109,7 +113,7 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
       // At rest, or nearly: without viscosity.
       Configuration end = now;
       std::vector<IterationRecord> tail;
-      NewtonSettings plain = newton_settings(options_);
+      NewtonSettings plain = options_;
       plain.max_iterations = 8;
       factor_.forget();
       NewtonOutcome finish = Newton(equations_, factor_, plain).run(end, to, step, tail);
@@ -126,7 +130,10 @@ Relaxation Relaxer::run(Configuration& configuration, const LoadPoint& from, con
         }
         last_trouble = fmt::format("came to rest in a state with {} negative modes", verdict.negative_modes);
         now = end;
-        disturb(now, to);
+        if (!disturb(now, to)) {
+          result.reason = last_trouble + ", and no direction was found along which the energy falls";
+          return result;
+        }
         dt = std::min(dt, 10.0);
       } else {
         last_trouble = finish.reason;

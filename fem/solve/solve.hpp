@@ -18,20 +18,25 @@
 
 namespace brachium::fem {
 
-struct SolveOptions {
+/// Of the iteration at one load point.
+struct NewtonSettings {
   double relative_residual = 1e-8;  ///< see fem/solve/equations.hpp for the norm that |R| is compared with
   double relative_step = 1e-6;     ///< |du| of the correction that is left, over the norm of the displacement
   int max_iterations = 20;         ///< Newton iterations a step (factorisations)
   int max_chord_iterations = 60;   ///< a step
+  bool chord = true;               ///< reuse a factor while the contraction is good enough
+  double volume_tolerance = 1e-8;  ///< on |theta - 1| where a bulk modulus is infinite (augmented Lagrange)
+  bool augment = true;             ///< move the multipliers there; else they stay
+};
+
+struct SolveOptions : NewtonSettings {
   int max_cut_backs = 8;           ///< in a row
   int max_relaxation_steps = 300;  ///< of one viscous continuation
   bool predictor = true;  ///< begin a step with the last factor; else with a new one at the last state
-  bool chord = true;      ///< reuse a factor while the contraction is good enough
   double smallest_step = 1.0 / 1024.0;  ///< fraction of a phase; below it the solve relaxes or fails
   double largest_step = 1.0;
   bool grow_steps = true;
-  double volume_tolerance = 1e-8;  ///< on |theta - 1| where a bulk modulus is infinite (augmented Lagrange)
-  int max_augmentations = 30;
+  int max_augmentations = 30;             ///< of contact pressures, a step
   double penalty_pa = 0.0;                ///< 0: chosen from the materials and said
   std::string stability = "every_state";  ///< "every_state", "phase_ends", "off"
   std::string on_instability =
@@ -61,6 +66,7 @@ struct SolveState {
   /// State before this one in the same phase, and the step between them: for extrapolation. Empty: none.
   Eigen::VectorXd dofs_before;
   double step_before = 0.0;
+  bool unstable = false;  ///< this state was found to be
 };
 
 struct Stability {

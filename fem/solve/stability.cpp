@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <cmath>
 
 namespace brachium::fem {
@@ -65,39 +63,6 @@ Stability check_stability(Equations& equations, TangentFactor& factor, const Sol
   }
   if (const auto modes = factor.negative_modes()) return judged(*modes, "at the state");
   return {"not checked", 0, fmt::format("`{}` does not count negative modes", options.linear_solver)};
-}
-
-std::optional<Eigen::VectorXd> negative_mode(const Equations& equations, const TangentFactor& factor) {
-  constexpr Eigen::Index block = 8;
-  constexpr int sweeps = 6;
-  const Eigen::Index n = equations.unknowns().count();
-  if (n < 2 * block) return std::nullopt;
-  Eigen::MatrixXd V(n, block);
-  for (Eigen::Index j = 0; j < block; ++j) {
-    for (Eigen::Index i = 0; i < n; ++i) {
-      V(i, j) =
-          std::sin(0.37 + 12.9898 * static_cast<double>(i) + 78.233 * static_cast<double>(j * (i % 17)));
-    }
-  }
-  std::optional<Eigen::VectorXd> mode;
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (Eigen::Index j = 0; j < block; ++j) {
-      Eigen::VectorXd x = V.col(j);
-      factor.solve(x);
-      V.col(j) = x / x.norm();
-    }
-    V = Eigen::HouseholderQR<Eigen::MatrixXd>(V).householderQ() * Eigen::MatrixXd::Identity(n, block);
-    Eigen::MatrixXd KV(n, block);
-    for (Eigen::Index j = 0; j < block; ++j) KV.col(j) = factor.multiply(equations, V.col(j));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(V.transpose() * KV);
-    if (ritz.eigenvalues()[0] < 0.0) mode = V * ritz.eigenvectors().col(0);
-    if (mode && sweep >= 2) break;
-  }
-  if (!mode) return std::nullopt;
-  Eigen::Index largest = 0;
-  mode->cwiseAbs().maxCoeff(&largest);
-  *mode /= (*mode)[largest];
-  return mode;
 }
 
 }  // namespace brachium::fem

@@ -7,8 +7,6 @@
 /// theorem 17.5). Where loads make the tangent unsymmetric, a positive definite symmetric part means stable;
 /// otherwise nothing is said.
 
-#include <optional>
-
 #include "fem/solve/equations.hpp"
 #include "fem/solve/tangent_factor.hpp"
 
@@ -18,9 +16,5 @@ namespace brachium::fem {
 /// loads; else the tangent is factorised again at the state. The method says which.
 Stability check_stability(Equations& equations, TangentFactor& factor, const SolveOptions& options,
                           Configuration& configuration, const LoadPoint& load);
-
-/// A direction (by unknown, largest entry 1) along which the tangent last factorised is negative, by block
-/// inverse iteration; none found: empty.
-std::optional<Eigen::VectorXd> negative_mode(const Equations& equations, const TangentFactor& factor);
 
 }  // namespace brachium::fem

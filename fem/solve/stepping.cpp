@@ -6,15 +6,14 @@
 #include <cmath>
 
 #include "fem/linear/stopwatch.hpp"
-#include "fem/solve/predictor.hpp"
-#include "fem/solve/relaxation.hpp"
-#include "fem/solve/stability.hpp"
 
 namespace brachium::fem {
 namespace {
 
 constexpr int cuts_before_relaxation = 4;
 constexpr int quick = 4, easy = 7, hard = 10;  // factorisations a step
+constexpr double branch_step =
+    1.0 / 16.0;  // of a phase: the shortest step that is blamed for an unstable state
 constexpr double time_tolerance = 1e-12;
 
 }  // namespace
@@ -90,146 +89,6 @@ std::string Stepper::begin_phase() {
   return {};
 }
 
-void Stepper::count(const NewtonOutcome& outcome, StepRecord& record) {
-  record.newton_iterations += outcome.newton;
-  record.chord_iterations += outcome.chord;
-  record.augmentations += outcome.augmentations;
-}
-
-Configuration Stepper::first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record,
-                                   Eigen::MatrixXd& pressure) {
-  Configuration guess = state_.configuration;
-  if (!options_.predictor) factor_.forget();
-  const bool fresh = !factor_.ready();
-  if (fresh) factor_.make(equations_, state_.configuration, from);
-  if (fresh && !options_.predictor) ++record.newton_iterations;
-  if (!predict(equations_, factor_, from, to, guess, pressure)) {
-    equations_.constraints().impose(to.amplitude, guess.dofs);
-    return guess;
-  }
-  IterationRecord r;
-  r.step = record.step;
-  r.kind = "predictor";
-  r.step_norm = equations_.displacements(guess.dofs - state_.configuration.dofs).norm();
-  if (fresh) r.note = "new factor";
-  if (options_.predictor && state_.dofs_before.size() > 0 && state_.step_before > 0.0) {
-    guess.dofs =
-        extrapolate(state_.dofs_before, state_.configuration.dofs, guess.dofs, h / state_.step_before);
-    equations_.constraints().impose(to.amplitude, guess.dofs);
-    r.note = "second order";
-  }
-  record.iterations.push_back(r);
-  return guess;
-}
-
-Stepper::Attempt Stepper::try_newton(double time, StepRecord& record) {
-  Attempt attempt;
-  const LoadPoint from = programme_.at(state_, state_.phase_time), to = programme_.at(state_, time);
-  const double h = time - state_.phase_time;
-  Eigen::MatrixXd pressure;
-  attempt.configuration = first_guess(from, to, h, record, pressure);
-  if (equations_.rate_dependent()) {
-    attempt.configuration.dofs_before = state_.configuration.dofs;
-    attempt.configuration.inverse_dt =
-        1.0 / (h * problem_.programme[static_cast<std::size_t>(state_.phase)].duration_s);
-  }
-  NewtonOutcome outcome =
-      Newton(equations_, factor_, newton_settings(options_))
-          .run(attempt.configuration, to, record.step, record.iterations, std::move(pressure));
-  count(outcome, record);
-  attempt.accepted = outcome.converged;
-  attempt.reason = outcome.reason;
-  attempt.last = std::move(outcome.last);
-  press(attempt, to, record);
-  return attempt;
-}
-
-/// Uzawa's iteration: contact pressures become multipliers until the penetration is within its tolerance.
-void Stepper::press(Attempt& attempt, const LoadPoint& load, StepRecord& record) {
-  const Contacts& contacts = equations_.loads().contacts();
-  if (contacts.empty()) return;
-  Configuration& c = attempt.configuration;
-  for (int k = 0; attempt.accepted; ++k) {
-    const double ratio = contacts.penetration_ratio(load.amplitude, c.dofs, c.contact_multiplier);
-    if (ratio <= 1.0) return;
-    if (k == options_.max_augmentations) {
-      attempt.accepted = false;
-      attempt.reason = fmt::format("{} augmentations left a contact gap of {:.3g} times its tolerance; a higher penalty needs fewer", k, ratio);
-      return;
-    }
-    c.contact_multiplier = contacts.pressures(load.amplitude, c.dofs, c.contact_multiplier);
-    NewtonOutcome outcome = Newton(equations_, factor_, newton_settings(options_)).run(c, load, record.step, record.iterations);
-    count(outcome, record);
-    ++record.augmentations;
-    attempt.accepted = outcome.converged;
-    attempt.reason = outcome.reason;
-    attempt.last = std::move(outcome.last);
-  }
-}
-
-Stepper::Attempt Stepper::try_relaxation(double time, StepRecord& record) {
-  Attempt attempt;
-  const LoadPoint from = programme_.at(state_, state_.phase_time), to = programme_.at(state_, time);
-  attempt.configuration = state_.configuration;
-  Relaxation r = Relaxer(equations_, factor_, options_)
-                     .run(attempt.configuration, from, to, false, record.step, record.iterations);
-  record.newton_iterations += r.newton;
-  record.chord_iterations += r.chord;
-  record.augmentations += r.augmentations;
-  record.relaxation_steps += r.steps;
-  record.dissipated_energy += r.dissipated_energy;
-  attempt.accepted = r.reached;
-  attempt.reason = r.reason;
-  attempt.stability = r.stability;
-  attempt.last = std::move(r.last);
-  return attempt;
-}
-
-bool Stepper::wants_stability(double time) const {
-  return options_.stability == "every_state" || (options_.stability == "phase_ends" && time >= 1.0);
-}
-
-/// Empty when the state may be accepted (perhaps another, relaxed one).
-std::string Stepper::judge_stability(Attempt& attempt, double time, StepRecord& record) {
-  if (!attempt.stability.verdict.empty()) {
-    record.stability = attempt.stability;
-    return {};
-  }
-  if (!wants_stability(time)) {
-    record.stability = {"not checked", 0, ""};
-    return {};
-  }
-  const LoadPoint load = programme_.at(state_, time);
-  record.stability = check_stability(equations_, factor_, options_, attempt.configuration, load);
-  if (record.stability.verdict != "unstable") return {};
-  const std::string finding =
-      fmt::format("{}: the equilibrium is unstable, {} negative modes ({})", place(time),
-                  record.stability.negative_modes, record.stability.method);
-  const auto warn = [&](const std::string& text) {
-    summary_.diagnostics.push_back(
-        {data::Severity::warning, "unstable-state", text, std::nullopt,
-         "contraction on the descending limb of the force-length curve is not unique"});
-  };
-  if (options_.on_instability == "fail") return finding;
-  if (options_.on_instability == "report") {
-    warn(finding);
-    return {};
-  }
-  Relaxation r = Relaxer(equations_, factor_, options_)
-                     .run(attempt.configuration, load, load, true, record.step, record.iterations);
-  record.newton_iterations += r.newton;
-  record.chord_iterations += r.chord;
-  record.augmentations += r.augmentations;
-  record.relaxation_steps += r.steps;
-  record.dissipated_energy += r.dissipated_energy;
-  if (!r.reached) return finding + "; " + r.reason;
-  warn(fmt::format("{}; relaxed to a stable state in {} viscous steps, {:.3g} J dissipated", finding, r.steps,
-                   r.dissipated_energy));
-  record.stability = r.stability;
-  attempt.last = std::move(r.last);
-  return {};
-}
-
 void Stepper::accept(Attempt& attempt, double time, StepRecord& record) {
   const double h = time - state_.phase_time;
   state_.dofs_before = state_.configuration.dofs;
@@ -248,6 +107,7 @@ void Stepper::accept(Attempt& attempt, double time, StepRecord& record) {
   } else {
     state_.factorised_at = {};
   }
+  state_.unstable = record.stability.verdict == "unstable";
   const Assembled& sums = attempt.last.sums;
   record.phase_time = time;
   record.volume = sums.volume;
@@ -268,31 +128,36 @@ void Stepper::accept(Attempt& attempt, double time, StepRecord& record) {
   summary_.last = state_;
 }
 
-/// Empty when `attempt` may be judged: a halved step, or a relaxed one, or the reason why neither is
-/// possible.
-std::string Stepper::after_failure(Attempt& attempt, double h, double time, StepRecord& record, bool& again) {
+void Stepper::halve(const Attempt& attempt, double h, StepRecord& record) {
   IterationRecord cut;
   cut.step = record.step;
   cut.kind = "cut";
-  cut.note = attempt.reason;
+  cut.note = attempt.accepted ? fmt::format("{} negative modes: a shorter step may keep to the stable branch",
+                                            attempt.stability.negative_modes)
+                              : attempt.reason;
   cut.relative_residual = attempt.last.relative;
   cut.worst_cell = attempt.last.sums.smallest_jacobian_cell;
   cut.worst_jacobian = attempt.last.sums.smallest_jacobian;
   record.iterations.push_back(cut);
   ++record.cut_backs;
-  const bool relax = options_.on_instability == "relax" && !equations_.rate_dependent();
+  state_.step_size = 0.5 * h;
+  factor_.forget();  // a factor of a lost iterate predicts badly
+}
+
+/// Empty when `attempt` may be judged: a halved step, or a relaxed one, or the reason why neither is
+/// possible.
+std::string Stepper::after_failure(Attempt& attempt, double h, double time, StepRecord& record, bool& again) {
+  halve(attempt, h, record);
+  const bool may_relax = options_.on_instability == "relax" && !equations_.rate_dependent();
   const bool smallest = 0.5 * h < options_.smallest_step || record.cut_backs >= options_.max_cut_backs;
-  if (!smallest && !(relax && record.cut_backs >= cuts_before_relaxation)) {
-    state_.step_size = 0.5 * h;
-    factor_.forget();  // a factor of a lost iterate predicts badly
-    again = true;
-    return {};
-  }
+  again = !smallest && !(may_relax && record.cut_backs >= cuts_before_relaxation);
+  if (again) return {};
   const std::string trouble = fmt::format(
       "{}: {} (relative residual {:.3g}, smallest J {:.3g} in cell {})", place(time), attempt.reason,
       attempt.last.relative, attempt.last.sums.smallest_jacobian, attempt.last.sums.smallest_jacobian_cell);
-  if (!relax) return fmt::format("{}; the step was cut {} times", trouble, record.cut_backs);
-  attempt = try_relaxation(time, record);
+  if (!may_relax) return fmt::format("{}; the step was cut {} times", trouble, record.cut_backs);
+  attempt.configuration = state_.configuration;
+  relax(attempt, programme_.at(state_, state_.phase_time), programme_.at(state_, time), false, record);
   if (!attempt.accepted) return fmt::format("{}; viscous continuation: {}", trouble, attempt.reason);
   summary_.diagnostics.push_back(
       {data::Severity::warning, "relaxed-state",
@@ -317,9 +182,15 @@ std::string Stepper::take_step() {
     if (left - h < 0.2 * h || left - h < time_tolerance) h = left;
     time = h == left ? 1.0 : state_.phase_time + h;
     attempt = try_newton(time, record);
-    if (!attempt.accepted) trouble = after_failure(attempt, h, time, record, again);
+    if (!attempt.accepted) {
+      trouble = after_failure(attempt, h, time, record, again);
+    } else {
+      judge_stability(attempt, time);
+      again = attempt.stability.verdict == "unstable" && !state_.unstable && h > branch_step;
+      if (again) halve(attempt, h, record);
+    }
   }
-  if (trouble.empty()) trouble = judge_stability(attempt, time, record);
+  if (trouble.empty()) trouble = settle(attempt, time, record);
   if (trouble.empty()) accept(attempt, time, record);
   record.seconds = watch.seconds();
   summary_.newton_iterations += record.newton_iterations;

@@ -4,8 +4,10 @@
 ///
 /// A step that fails is halved. After `cuts_before_relaxation` halvings in a row (or at the smallest step)
 /// the state is continued by viscous flow, where options ask for it; else the solve ends with its reason.
-/// Every number is bounded. A step that needed at most 4 factorisations doubles the next, at most 7 leaves it
-/// a quarter longer, more than 10 makes it a third shorter.
+/// Every number is bounded. An unstable state that follows a stable one may lie on another branch that a long
+/// step has led to: steps longer than 1/16 of a phase are halved before it is believed. A step that needed at
+/// most 4 factorisations doubles the next, at most 7 leaves it a quarter longer, more than 10 makes it a
+/// third shorter.
 
 #include <string>
 
@@ -45,12 +47,14 @@ class Stepper {
   std::string take_step();
   std::string after_failure(Attempt& attempt, double h, double time, StepRecord& record, bool& again);
   Attempt try_newton(double time, StepRecord& record);
-  Attempt try_relaxation(double time, StepRecord& record);
+  void halve(const Attempt& attempt, double h, StepRecord& record);
+  void relax(Attempt& attempt, const LoadPoint& from, const LoadPoint& to, bool disturb, StepRecord& record);
   void press(Attempt& attempt, const LoadPoint& load, StepRecord& record);
   bool wants_stability(double time) const;
   Configuration first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record,
                             Eigen::MatrixXd& pressure);
-  std::string judge_stability(Attempt& attempt, double time, StepRecord& record);
+  void judge_stability(Attempt& attempt, double time);
+  std::string settle(Attempt& attempt, double time, StepRecord& record);
   void accept(Attempt& attempt, double time, StepRecord& record);
   void count(const NewtonOutcome& outcome, StepRecord& record);
   void collect(double seconds);

@@ -123,7 +123,6 @@ std::string TangentFactor::factorise(const Equations& equations) {
   const Unknowns& unknowns = equations.unknowns();
   ++factorisations;
   FactorStatus status;
-  values_ = symmetric_part(equations, tangent_);
   SolverStatistics statistics;
   if (unsymmetric_) {
     const FullPattern& full = unsymmetric_->pattern();
@@ -136,7 +135,7 @@ std::string TangentFactor::factorise(const Equations& equations) {
     status = unsymmetric_->factorise(values);
     statistics = unsymmetric_->statistics();
   } else {
-    status = symmetric_->factorise(values_);
+    status = symmetric_->factorise(symmetric_part(equations, tangent_));
     statistics = symmetric_->statistics();
   }
   ready_ = status.solvable();
@@ -192,14 +191,6 @@ void TangentFactor::solve(Eigen::VectorXd& x) const {
   }
   ++back_substitutions;
   solve_seconds += watch.seconds();
-}
-
-Eigen::VectorXd TangentFactor::multiply(const Equations& equations, const Eigen::VectorXd& x) const {
-  Eigen::VectorXd y(x.size());
-  fem::multiply({&equations.unknowns().pattern, values_.data()},
-                {x.data(), static_cast<std::size_t>(x.size())},
-                {y.data(), static_cast<std::size_t>(y.size())});
-  return y;
 }
 
 std::optional<TangentFactor::NegativeModes> TangentFactor::negative_modes() const {

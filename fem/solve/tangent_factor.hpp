@@ -30,8 +30,6 @@ class TangentFactor {
 
   /// x := K^-1 x.
   void solve(Eigen::VectorXd& x) const;
-  /// y = K x of the matrix last factorised (its symmetric part where it is not symmetric).
-  Eigen::VectorXd multiply(const Equations& equations, const Eigen::VectorXd& x) const;
 
   /// Negative eigenvalues of the tangent beyond those that the pressures of a saddle point bring; none where
   /// the solver does not tell.
@@ -68,7 +66,6 @@ class TangentFactor {
   SolverOptions options_;
   std::unique_ptr<SymmetricSolver> symmetric_;
   std::unique_ptr<UnsymmetricSolver> unsymmetric_;
-  std::vector<double> values_;  ///< lower triangle last factorised, with the symmetric part of the loads
   long constraint_unknowns_ = 0;
   double cost_ratio_ = 1.0, tangent_flops_ = 0.0, residual_flops_ = 0.0;
   bool ready_ = false;

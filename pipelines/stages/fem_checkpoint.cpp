@@ -86,6 +86,7 @@ void put(const fem::SolveState& state, io::StageFileContent& content) {
   content.attributes["step_size"] = exact(state.step_size);
   content.attributes["step_before"] = exact(state.step_before);
   content.attributes["steps_taken"] = std::to_string(state.steps_taken);
+  content.attributes["unstable"] = state.unstable ? "1" : "0";
 }
 
 fem::SolveState state_of(const io::StageFileContent& content) {
@@ -104,6 +105,7 @@ fem::SolveState state_of(const io::StageFileContent& content) {
   state.step_size = number(content.attributes, "step_size");
   state.step_before = number(content.attributes, "step_before");
   state.steps_taken = static_cast<int>(number(content.attributes, "steps_taken"));
+  state.unstable = number(content.attributes, "unstable") != 0.0;
   return state;
 }
 

@@ -91,20 +91,6 @@ double largest_difference(const Problem& problem, const Eigen::VectorXd& dofs, F
   return worst;
 }
 
-/// Best order log(d2/d1)/log(d1/d0) of three Newton corrections in a row; 0 where there are not three.
-inline double observed_order(const StepRecord& step) {
-  std::vector<double> d;
-  for (const IterationRecord& i : step.iterations) {
-    if (i.kind == "newton") d.push_back(i.step_norm);
-  }
-  double best = 0.0;
-  for (std::size_t k = 2; k < d.size(); ++k) {
-    if (d[k] > 1e-14 && d[k - 1] < 0.2 * d[k - 2])
-      best = std::max(best, std::log(d[k] / d[k - 1]) / std::log(d[k - 1] / d[k - 2]));
-  }
-  return best;
-}
-
 inline std::vector<std::string> codes(const std::vector<data::Diagnostic>& list) {
   std::vector<std::string> names;
   for (const auto& d : list) names.push_back(d.code);

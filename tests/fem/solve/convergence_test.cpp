@@ -76,20 +76,6 @@ Problem clamped(Formulation formulation, double stretch, double alpha, int nx = 
   return p;
 }
 
-TEST(NewtonConvergence, IsQuadratic) {
-  SolveOptions o = quick_options();
-  o.chord = false;
-  o.relative_residual = 1e-12;
-  o.stability = "off";
-  const Summary s = solve(clamped(Formulation::q2_p1_discontinuous, 1.1, 0.5), o);
-  ASSERT_TRUE(s.completed) << s.reason << log_text(s);
-  // The order from three corrections in a row, above rounding: of displacements alone, while displacements
-  // and pressures converge quadratically together.
-  ASSERT_EQ(s.steps.size(), 2u);
-  EXPECT_GT(tests::observed_order(s.steps[0]), 1.8) << log_text(s);
-  EXPECT_GT(tests::observed_order(s.steps[1]), 1.6) << log_text(s);
-}
-
 TEST(NewtonConvergence, ChordIterationsReachTheSameStateWithFewerFactorisations) {
   SolveOptions full = quick_options(), chord = full;
   full.chord = false;
