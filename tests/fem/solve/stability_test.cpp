@@ -65,8 +65,8 @@ TEST(Stability, ABuckledRodRelaxesToTheBentStateAndEnergyIsDissipated) {
   EXPECT_LE(last.relative_residual, 1e-8);
 }
 
-/// Stretched and fully activated in one step each, Newton leads Q2/P1 to another equilibrium (29.41 N, 8 negative modes)
-/// than the one that shorter steps lead to.
+/// Stretched and fully activated in one step each, Newton leads Q2/P1 to another equilibrium (29.41 N, 8
+/// negative modes) than the one that shorter steps lead to.
 TEST(Stability, AStepThatLeadsToAnotherBranchIsHalved) {
   Problem p = body(Formulation::q2_p1_discontinuous, {0.04, 0.01, 0.01}, 8, 2, 2,
                    {block_muscle(), {VolumetricLaw::quadratic, tests::infinite}});
@@ -88,13 +88,14 @@ TEST(Stability, AStepThatLeadsToAnotherBranchIsHalved) {
   EXPECT_NEAR(reached, 29.5330, 0.005) << "Taylor-Hood on the same mesh";
 }
 
-/// What grows fastest in a flow: the slender rod's bending, of which Taylor-Hood must see the displacements and not a
-/// pressure, and of a block on the descending limb modes far from the eigenvalue next to zero.
+/// What grows fastest in a flow: the slender rod's bending, of which Taylor-Hood must see the displacements
+/// and not a pressure, and of a block on the descending limb modes far from the eigenvalue next to zero.
 TEST(Stability, TheGrowingModeIsADirectionAlongWhichTheEnergyFalls) {
   for (const Formulation f : {Formulation::q2_q1_taylor_hood, Formulation::q2_p1_discontinuous}) {
     const double mu = 1e5, a = 0.004, length = 0.08;
     const double critical = M_PI * M_PI * 3.0 * mu * std::pow(a, 4) / 12.0 / (4.0 * length * length);
-    Problem p = body(f, {length, a, a}, 8, 1, 1, {NeoHooke{mu, false}, {VolumetricLaw::quadratic, tests::infinite}});
+    Problem p =
+        body(f, {length, a, a}, 8, 1, 1, {NeoHooke{mu, false}, {VolumetricLaw::quadratic, tests::infinite}});
     p.conditions = {{"foot", "x0", Fixed{}}, {"push", "x1", DeadTraction{{-1.2 * critical, 0.0, 0.0}, true}}};
     p.programme = {{"push", {{"push", 1.0}}, {}, {}, 1, 1.0}};
     SolveOptions o = quick_options();
@@ -114,7 +115,8 @@ TEST(Stability, TheGrowingModeIsADirectionAlongWhichTheEnergyFalls) {
     const auto side = [&](double x) {
       double size = 0.0;
       for (int n = 0; n < p.mesh->point_count(); ++n) {
-        if (std::abs(p.mesh->points(0, n) - x) < 1e-9) size = std::max(size, by_dof.segment<2>(3 * n + 1).norm());
+        if (std::abs(p.mesh->points(0, n) - x) < 1e-9)
+          size = std::max(size, by_dof.segment<2>(3 * n + 1).norm());
       }
       return size;
     };
@@ -171,11 +173,12 @@ TEST(Stability, AnUnstableContractionIsReportedRefusedOrRelaxedAsAsked) {
   EXPECT_LE(relaxed.steps.back().relative_residual, 1e-8);
 }
 
-/// The fully active block past its optimum, where plain Newton is lost: viscous continuation gets through with either
-/// kind of pressure, and what it leaves holds no viscosity.
+/// The fully active block past its optimum, where plain Newton is lost: viscous continuation gets through
+/// with either kind of pressure, and what it leaves holds no viscosity.
 TEST(Stability, ContinuationGetsThroughTheDescendingLimbWithEitherPressure) {
   for (const Formulation f : {Formulation::q2_q1_taylor_hood, Formulation::q2_p1_discontinuous}) {
-    Problem p = body(f, {0.04, 0.01, 0.01}, 6, 2, 2, {block_muscle(), {VolumetricLaw::quadratic, tests::infinite}});
+    Problem p =
+        body(f, {0.04, 0.01, 0.01}, 6, 2, 2, {block_muscle(), {VolumetricLaw::quadratic, tests::infinite}});
     const Problem clamped = descending(1.2, 1.0);
     p.conditions = clamped.conditions;
     p.programme = clamped.programme;
