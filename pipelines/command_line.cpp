@@ -79,7 +79,7 @@ int run(const Arguments& a, const Catalogue& catalogue, const Console& console,
 }
 
 int check(const Arguments& a, const Catalogue& catalogue, const Console& console) {
-  const Definition definition = read_definition(a.file, a.settings, catalogue);
+  const Definition definition = read_definition(a.file, a.settings, catalogue, StageChecks::run);
   if (!a.quiet) console.err << data::render(definition.warnings);
   if (a.as_json) {
     console.out << dump(errors_json({}, "done", 0));

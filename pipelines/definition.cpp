@@ -25,8 +25,8 @@ const std::array<std::string, 5> stage_keys{"name", "run", "input", "trials", "e
 
 class Reader {
  public:
-  Reader(const fs::path& file, std::span<const std::string> settings, const Catalogue& catalogue)
-      : catalogue_(catalogue), root_(io::read_toml(file)) {
+  Reader(const fs::path& file, std::span<const std::string> settings, const Catalogue& catalogue, StageChecks checks)
+      : catalogue_(catalogue), checks_(checks), root_(io::read_toml(file)) {
     definition_.file = fs::absolute(file).lexically_normal();
     folder_ = definition_.file.parent_path();
     definition_.settings.assign(settings.begin(), settings.end());
@@ -47,6 +47,9 @@ class Reader {
     read_scene();
     for (std::size_t i = 0; i < definition_.stages.size(); ++i) check_inputs(i);
     for (const StageDefinition& stage : definition_.stages) check_trials(stage);
+    if (checks_ == StageChecks::run) {
+      for (const StageDefinition& stage : definition_.stages) check_stage(stage);
+    }
     for (const Expectation& e : definition_.expectations)
       check_stage_name(e.stage, "expected number", e.place);
     definition_.order = topological_order(definition_.stages, diagnostics_);
@@ -136,12 +139,19 @@ class Reader {
       stage.export_sto = entry.boolean("export_sto").value_or(false);
       if (auto input = entry.table("input")) read_wires(*input, stage);
       if (stage.spec) {
+        const std::size_t before = diagnostics_.size();
         stage.options = parse_options(entry.node(), stage.spec->options, fmt::format("stage `{}`", run),
                                       stage_keys, diagnostics_);
-        for_each_file(stage.options, stage.spec->options, [&](const OptionSpec& option, std::string& path) {
+        for_each_file(stage.options, stage.spec->options, [&](const OptionSpec& option, std::string& path,
+                                                                    const data::SourceSpan& where) {
           path = resolve(path).string();
-          file_exists(path, stage.where, fmt::format("file of option `{}`", option.key));
+          file_exists(path, where, fmt::format("file of option `{}`", option.key));
         });
+        // A key too many leaves the others as they are; what else is wrong leaves options without a value.
+        stage_sound_.push_back(std::all_of(diagnostics_.begin() + static_cast<std::ptrdiff_t>(before), diagnostics_.end(),
+                                           [](const Diagnostic& d) { return d.code == "unknown-key"; }));
+      } else {
+        stage_sound_.push_back(false);
       }
       definition_.stages.push_back(std::move(stage));
     }
@@ -308,6 +318,16 @@ class Reader {
     }
   }
 
+  void check_stage(const StageDefinition& stage) {
+    if (!stage.spec || !stage.spec->check || !stage_sound_[stage.number - 1]) return;
+    const data::Scene* scene = definition_.scene ? &*definition_.scene : nullptr;
+    if (stage.spec->needs_scene && !scene) return;
+    for (Diagnostic d : stage.spec->check({stage.name, &stage.options, scene})) {
+      if (!d.where) d.where = stage.where;
+      diagnostics_.push_back(std::move(d));
+    }
+  }
+
   /// Patterns can be checked now where the stage works on the session itself; others are checked when it
   /// runs.
   void check_trials(const StageDefinition& stage) {
@@ -331,10 +351,12 @@ class Reader {
   }
 
   const Catalogue& catalogue_;
+  const StageChecks checks_;
   TomlNode root_;
   fs::path folder_;
   std::vector<Diagnostic> diagnostics_;
   Definition definition_;
+  std::vector<bool> stage_sound_;  ///< by stage: its options can be used
   bool names_session_ = false, names_scene_ = false;
   data::SourceSpan session_where_, scene_where_;
   std::vector<std::string> trials_, channels_;  ///< of the session, where known
@@ -362,8 +384,8 @@ std::string to_string(PortType type) {
 }
 
 Definition read_definition(const fs::path& file, std::span<const std::string> settings,
-                           const Catalogue& catalogue) {
-  return Reader(file, settings, catalogue).read();
+                           const Catalogue& catalogue, StageChecks checks) {
+  return Reader(file, settings, catalogue, checks).read();
 }
 
 }  // namespace brachium::pipelines

@@ -57,11 +57,15 @@ struct Definition {
   const StageDefinition* find(const std::string& stage) const;
 };
 
+/// Whether the stages' own checks (StageSpec::check) are part of reading a definition. They read the files that options
+/// name; a definition is also read to look at it where these are no longer at hand.
+enum class StageChecks { leave, run };
+
 /// Reads and checks a definition; paths in it are relative to its folder, paths in `settings` to the current
 /// one. The definition refers to the catalogue, which must outlive it. Throws InputError with all mistakes at
-/// once: those of the definition, of its scene and of its session description.
+/// once: those of the definition, of its scene and of its session description, and of its stages.
 Definition read_definition(const std::filesystem::path& file, std::span<const std::string> settings,
-                           const Catalogue& catalogue);
+                           const Catalogue& catalogue, StageChecks checks = StageChecks::leave);
 
 /// The definition with every default written out and paths absolute; reading it gives the same definition.
 std::string resolved_text(const Definition& definition);

@@ -89,7 +89,7 @@ const std::vector<ErrorCode>& error_codes() {
        "A signal does not vary at all: a broken lead, a muted recorder or a wrong column."},
       {"contact-grid",
        "Spacing, margin or smoothing of the grid of distances to a rigid body is not usable; the message "
-       "gives the range."},
+       "gives the range. As a note: how far the grid's zero level is from the body's triangles."},
       {"contact-option",
        "Penalty or smoothing width of a contact is not usable; the message gives the range."},
       {"contact-shape",
@@ -379,6 +379,7 @@ const std::vector<ErrorCode>& error_codes() {
       {"unknown-choice", "There is no such choice; the message lists those there are."},
       {"unknown-column", "A table of a scene has a column that is not known."},
       {"unknown-condition", "A phase names a boundary condition that is not there."},
+      {"unknown-contact", "A wanted quantity names a contact that the definition does not have; the nearest name is given."},
       {"unknown-coordinate", "A name is not that of a joint coordinate of the scene."},
       {"unknown-curve-set", "There is no such set of muscle curves."},
       {"unknown-cutoff", "There is no such convention for cut-off frequencies."},

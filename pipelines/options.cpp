@@ -48,9 +48,11 @@ class Reader {
                std::span<const std::string> reserved) {
     unknown_keys(table, specs, reserved);
     Options options;
+    options.set_where({}, table.where);
     for (const OptionSpec& spec : specs) {
       if (const TomlNode* node = table.find(spec.key)) {
         if (auto value = read_value(spec, *node)) options.set(spec.key, std::move(*value));
+        note_places(spec.key, *node, options);
       } else if (spec.fallback) {
         options.set(spec.key, *spec.fallback);
       } else if (!spec.optional && !unit_mistakes_.contains(spec.key)) {
@@ -62,6 +64,13 @@ class Reader {
   }
 
  private:
+  static void note_places(const std::string& key, const TomlNode& node, Options& options) {
+    options.set_where(key, node.where);
+    for (std::size_t i = 0; i < node.items.size(); ++i)
+      options.set_where(fmt::format("{}[{}]", key, i), node.items[i].where);
+    for (const auto& [name, member] : node.members) options.set_where(key + "." + name, member.key_where);
+  }
+
   void error(const char* code, std::string message, const data::SourceSpan& where, std::string help = {}) {
     diagnostics_.push_back({Severity::error, code, std::move(message), where, std::move(help)});
   }
@@ -316,6 +325,14 @@ std::optional<std::string> Options::maybe_text(const std::string& key) const {
   return has(key) ? std::optional(text(key)) : std::nullopt;
 }
 
+const data::SourceSpan& Options::where(const std::string& path) const {
+  static const data::SourceSpan nowhere;
+  auto found = places_.find(path);
+  if (found == places_.end()) found = places_.find(path.substr(0, path.find_first_of(".[")));
+  if (found == places_.end()) found = places_.find({});
+  return found == places_.end() ? nowhere : found->second;
+}
+
 Options parse_options(const TomlNode& table, std::span<const OptionSpec> specs, const std::string& owner,
                       std::span<const std::string> reserved, std::vector<Diagnostic>& diagnostics) {
   return Reader(owner, diagnostics).read(table, specs, reserved);
@@ -339,13 +356,13 @@ TomlNode options_tree(const Options& options, std::span<const OptionSpec> specs)
 }
 
 void for_each_file(Options& options, std::span<const OptionSpec> specs,
-                   const std::function<void(const OptionSpec&, std::string&)>& visit) {
+                   const std::function<void(const OptionSpec&, std::string&, const data::SourceSpan&)>& visit) {
   for (const OptionSpec& spec : specs) {
     const auto found = options.values().find(spec.key);
     if (found == options.values().end()) continue;
     OptionValue value = found->second;
     if (std::string* text = std::get_if<std::string>(&value); text && spec.is_file) {
-      visit(spec, *text);
+      visit(spec, *text, options.where(spec.key));
     } else if (auto* tables = std::get_if<std::vector<Options>>(&value)) {
       for (Options& nested : *tables) for_each_file(nested, spec.fields, visit);
     } else {

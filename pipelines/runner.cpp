@@ -44,7 +44,8 @@ class Run {
   Run(const Catalogue& catalogue, const RunRequest& request, RunObserver& observer)
       : request_(request),
         definition_(
-            std::make_shared<Definition>(read_definition(request.definition, request.settings, catalogue))),
+            std::make_shared<Definition>(
+                read_definition(request.definition, request.settings, catalogue, StageChecks::run))),
         folder_(request.out.empty() ? fs::path("runs") / definition_->file.stem() : request.out),
         observer_(folder_.path() / "log.txt", observer),
         digests_(folder_.path() / "digests.json") {
@@ -340,8 +341,9 @@ class Run {
     parts["program"] = program_version();
     if (!scene_digest_.empty()) parts["scene"] = scene_digest_;
     Options options = stage.options;
-    for_each_file(options, stage.spec->options, [&](const OptionSpec& option, std::string& path) {
-      parts[fmt::format("asset.{}", fs::path(path).filename().string())] = fmt::format("{} {}", option.key, digests_.of(path));
+    for_each_file(options, stage.spec->options, [&](const OptionSpec& option, std::string& path, const data::SourceSpan&) {
+      std::string& part = parts[fmt::format("asset.{}", fs::path(path).filename().string())];
+      part += fmt::format("{}{} {}", part.empty() ? "" : ", ", option.key, digests_.of(path));  // files of one name
     });
     for (const auto& [port, wires] : stage.inputs) {
       for (std::size_t i = 0; i < wires.size(); ++i)

@@ -68,8 +68,15 @@ class Options {
   std::optional<double> maybe_number(const std::string& key) const;
   std::optional<std::string> maybe_text(const std::string& key) const;
 
+  /// Where the user wrote it: the value of "key", an entry of its list "key[2]", a name of its table "key.name", or, for
+  /// an empty path, this table. What was not written stands where its list or table does. Not part of the value:
+  /// options are equal wherever they were written.
+  const data::SourceSpan& where(const std::string& path = {}) const;
+  void set_where(const std::string& path, data::SourceSpan where) { places_[path] = std::move(where); }
+
  private:
   std::map<std::string, OptionValue> values_;
+  std::map<std::string, data::SourceSpan> places_;
 };
 
 // ---------------------------------------------------------------- inputs and outputs
@@ -149,6 +156,13 @@ struct ReportContext {
   const data::Scene* scene = nullptr;
 };
 
+/// What can be judged before anything runs.
+struct CheckContext {
+  std::string name;  ///< of this stage in the pipeline
+  const Options* options = nullptr;
+  const data::Scene* scene = nullptr;  ///< null if the pipeline names none
+};
+
 struct StageSpec {
   std::string name;     ///< "emg.envelope"
   std::string summary;  ///< one line
@@ -158,6 +172,9 @@ struct StageSpec {
   PortType output = PortType::signals;
   bool needs_scene = false;
   std::function<void(const StageContext&, StageOutput&)> run;
+  /// Mistakes of options that fit the specification one by one and not together, or not with the files they name; each
+  /// with its place (Options::where). May be empty; need not find what only the inputs can tell.
+  std::function<std::vector<data::Diagnostic>(const CheckContext&)> check;
   std::function<void(const ReportContext&, report::Section&)> report;  ///< may be empty
   std::function<std::string(const ReportContext&)> methods;            ///< may be empty
   int version = 1;  ///< raised when the stage gives other results for the same inputs and options

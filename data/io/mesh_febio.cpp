@@ -1,4 +1,4 @@
-/// FEBio's .feb files, mesh section of the specifications 2.5 (Geometry), 3.0 and 4.0 (Mesh). The order of
+/// FEBio's .feb files, mesh section of the specifications 2.5 (Geometry), 3.0 and 4.0 (Mesh), and MeshData. The order of
 /// nodes of hex27 is VTK's but for the face centres: 2D planes of FEBio's shape functions (FEHex27) in the
 /// order -y +x +y -x -z +z.
 
@@ -69,6 +69,16 @@ class FebioReader {
       Eigen::MatrixXd& field = raw_.cell_fields[name];
       field = Eigen::MatrixXd::Zero(1, static_cast<Eigen::Index>(raw_.types.size()));
       for (const int cell : members) field(0, cell) = 1.0;
+    }
+    for (const char* section : {"Geometry", "MeshData"}) {
+      for (const pugi::xml_node data : root.child(section).children("ElementData")) read_element_data(data);
+      for (const pugi::xml_node data : root.child(section).children("NodeData")) read_node_data(data);
+      if (root.child(section).child("SurfaceData")) raw_.note("data on surfaces (SurfaceData) were left out");
+    }
+    for (const auto& [name, missing] : without_value_) note_missing(name, missing);
+    for (const char* name : {"fiber", "mat_axis"}) {
+      if (root.child("Material").find_node([&](const pugi::xml_node& n) { return std::string_view(n.name()) == name; }))
+        raw_.note(fmt::format("<{}> within a material was left out: only MeshData are read", name));
     }
     return std::move(raw_);
   }
@@ -154,6 +164,7 @@ class FebioReader {
       raw_.note(fmt::format("an element block without a name was called `{}`", name));
     }
     const int region = raw_.regions.index(name);
+    std::vector<int>& block = element_blocks_[name];
     std::vector<int> nodes;
     for (const pugi::xml_node elem : elements.children("elem")) {
       const auto ids = numbers<long long>(elem);
@@ -163,6 +174,7 @@ class FebioReader {
       for (const long long id : ids) nodes.push_back(point(elem, id));
       if (!cell_.try_emplace(id_of(elem), static_cast<int>(raw_.types.size())).second)
         fail(elem, "mesh-syntax", fmt::format("element {} stands twice", id_of(elem)));
+      block.push_back(static_cast<int>(raw_.types.size()));
       raw_.add_cell(*cell, region, nodes, febio_order);
     }
   }
@@ -218,6 +230,101 @@ class FebioReader {
     }
   }
 
+  /// Members of the set that a table of MeshData is about, in their order: its entries are numbered by it.
+  const std::vector<int>& set_of(const pugi::xml_node& data, const char* attribute,
+                                 const std::map<std::string, std::vector<int>>& first,
+                                 const std::map<std::string, std::vector<int>>& second) const {
+    const std::string name = data.attribute(attribute).value();
+    std::vector<std::string> known;
+    for (const auto* sets : {&first, &second}) {
+      if (const auto found = sets->find(name); found != sets->end()) return found->second;
+      for (const auto& [other, members] : *sets) known.push_back(other);
+    }
+    fail(data, "missing-region", fmt::format("<{}> is about the set `{}`, which the mesh does not have", data.name(), name),
+         data::suggest(name, known));
+  }
+
+  /// Place of an entry's member among all cells or points: by its number within the set (lid) or by its id (2.5).
+  std::size_t member(const pugi::xml_node& entry, const std::vector<int>& set,
+                     const std::unordered_map<long long, int>& by_id) const {
+    if (!entry.attribute("lid")) {
+      const auto found = by_id.find(id_of(entry));
+      if (found == by_id.end()) fail(entry, "mesh-index", fmt::format("<{}> {} does not exist", entry.name(), id_of(entry)));
+      return static_cast<std::size_t>(found->second);
+    }
+    const long long lid = entry.attribute("lid").as_llong();
+    if (lid < 1 || lid > static_cast<long long>(set.size()))
+      fail(entry, "mesh-index", fmt::format("entry {} of a set of {} members", lid, set.size()));
+    return static_cast<std::size_t>(set[static_cast<std::size_t>(lid - 1)]);
+  }
+
+  void put(std::map<std::string, Eigen::MatrixXd>& fields, const std::string& name, const pugi::xml_node& entry,
+           std::size_t column, const std::vector<double>& values, std::size_t columns) {
+    Eigen::MatrixXd& field = fields[name];
+    const auto rows = static_cast<Eigen::Index>(values.size());
+    if (field.size() == 0) {
+      field = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns));
+      without_value_[name].assign(columns, true);
+    }
+    if (field.rows() != rows)
+      fail(entry, "mesh-size", fmt::format("an entry of `{}` has {} numbers, others have {}", name, rows, field.rows()));
+    field.col(static_cast<Eigen::Index>(column)) = Eigen::Map<const Eigen::VectorXd>(values.data(), rows);
+    without_value_[name][column] = false;
+  }
+
+  /// What a table of MeshData holds: `var` until 3.0, `type` or the name of a table of the user's in 4.0.
+  static std::string kind_of(const pugi::xml_node& data) {
+    for (const char* key : {"var", "type", "name"}) {
+      if (data.attribute(key)) return data.attribute(key).value();
+    }
+    return {};
+  }
+
+  void refuse_computed(const pugi::xml_node& data) const {
+    const bool generator = data.attribute("generator") || (data.attribute("name") && data.attribute("type"));
+    if (generator)
+      fail(data, "mesh-unsupported", fmt::format("<{}> is left to FEBio to compute, not given by values", data.name()),
+           "write the values into the file");
+  }
+
+  /// Fibres, axes, and tables of the user's by cell. `mat_axis` gives two fields: a, along which FEBio's fibres lie, and d.
+  void read_element_data(const pugi::xml_node& data) {
+    const std::string kind = kind_of(data);
+    refuse_computed(data);
+    static const std::vector<int> none;
+    const bool named = data.attribute("elem_set");
+    const std::vector<int>& set = named ? set_of(data, "elem_set", element_sets_, element_blocks_) : none;
+    for (const pugi::xml_node entry : data.children()) {
+      if (entry.type() != pugi::node_element) continue;
+      const std::size_t cell = member(entry, set, cell_), cells = raw_.types.size();
+      bool parts = false;
+      const pugi::xml_node axes = entry.child("mat_axis") ? entry.child("mat_axis") : entry;
+      for (const auto& [part, name] : {std::pair{entry.child("fiber"), "fiber"}, std::pair{axes.child("a"), "mat_axis_a"},
+                                       std::pair{axes.child("d"), "mat_axis_d"}}) {
+        if (!part) continue;
+        parts = true;
+        put(raw_.cell_fields, name, entry, cell, numbers<double>(part), cells);
+      }
+      if (!parts) put(raw_.cell_fields, kind, entry, cell, numbers<double>(entry), cells);
+    }
+  }
+
+  void read_node_data(const pugi::xml_node& data) {
+    refuse_computed(data);
+    const std::vector<int>& set = set_of(data, "node_set", raw_.node_sets, {});
+    for (const pugi::xml_node entry : data.children()) {
+      if (entry.type() != pugi::node_element) continue;
+      put(raw_.point_fields, kind_of(data), entry, member(entry, set, point_), numbers<double>(entry), raw_.points.size());
+    }
+  }
+
+  void note_missing(const std::string& name, const std::vector<bool>& missing) {
+    const auto count = std::count(missing.begin(), missing.end(), true);
+    if (count == 0) return;
+    raw_.note(fmt::format("field `{}` has no value at {} {}; 0 is used there", name, count,
+                          raw_.cell_fields.contains(name) ? "cells" : "points"));
+  }
+
   void check_domains(const pugi::xml_node& domains) const {
     for (const pugi::xml_node domain : domains.children()) {
       if (domain.type() != pugi::node_element) continue;
@@ -233,7 +340,8 @@ class FebioReader {
   RawMesh raw_;
   std::unordered_map<long long, int> point_, cell_;
   std::set<std::pair<std::string, std::string>> names_;
-  std::map<std::string, std::vector<int>> element_sets_;
+  std::map<std::string, std::vector<int>> element_sets_, element_blocks_;
+  std::map<std::string, std::vector<bool>> without_value_;  ///< by field of MeshData
 };
 
 }  // namespace

@@ -277,8 +277,10 @@ Assembly::Assembly(std::shared_ptr<const Discretisation> discretisation,
                            "every region needs its own");
   }
   const PressureSpace space = pressure_space(d.formulation());
+  std::vector<bool> fibrous;
   for (std::size_t r = 0; r < materials.size(); ++r) {
     check(materials[r].material);
+    fibrous.push_back(needs_fibres(materials[r].material));
     const Volumetric& v = materials[r].volumetric;
     if (!(v.bulk_modulus_pa > 0.0)) {
       throw data::InputError(
@@ -324,7 +326,7 @@ Assembly::Assembly(std::shared_ptr<const Discretisation> discretisation,
     }
     impl_->volumes.push_back(volume);
   }
-  impl_->batches = make_batches(d, tissue);
+  impl_->batches = make_batches(d, tissue, fibrous);
   impl_->discretisation = std::move(discretisation);
   impl_->materials = std::move(materials);
   impl_->tissue = std::move(tissue);

@@ -11,7 +11,7 @@
 namespace brachium::fem {
 namespace {
 
-void check_tissue(const Discretisation& d, const TissueField& tissue) {
+void check_tissue(const Discretisation& d, const TissueField& tissue, const std::vector<bool>& fibrous) {
   const Eigen::Index points = static_cast<Eigen::Index>(d.cell_count()) * d.quadrature().size();
   const auto size = [&](Eigen::Index given, const char* what) {
     if (given == 0 || given == points) return;
@@ -25,6 +25,8 @@ void check_tissue(const Discretisation& d, const TissueField& tissue) {
   size(tissue.soft_tissue.size(), "the share of soft tissue");
   const int n_q = d.quadrature().size();
   for (Eigen::Index i = 0; i < tissue.fibre.cols(); ++i) {
+    const int region = d.mesh().region_of_cell[static_cast<std::size_t>(i / n_q)];
+    if (!fibrous[static_cast<std::size_t>(region)]) continue;
     const double norm = tissue.fibre.col(i).norm();
     if (!(std::abs(norm - 1.0) < 1e-6)) {
       throw data::InputError("zero-fibre",
@@ -113,8 +115,8 @@ KernelInput Batches::input(std::size_t b) const {
   return in;
 }
 
-Batches make_batches(const Discretisation& d, const TissueField& tissue) {
-  check_tissue(d, tissue);
+Batches make_batches(const Discretisation& d, const TissueField& tissue, const std::vector<bool>& fibrous) {
+  check_tissue(d, tissue, fibrous);
   Batches batches;
   const int n_q = d.quadrature().size(), p = d.pressures_per_cell(), nodes = d.nodes_per_cell();
   batches.nodes = nodes;
@@ -181,9 +183,10 @@ Batches make_batches(const Discretisation& d, const TissueField& tissue) {
                 .lane[l] = gradient(a, j);
         }
         // Laws without fibres never look at the direction; a unit vector keeps every lane finite.
+        const bool given = tissue.fibre.cols() > 0 && fibrous[static_cast<std::size_t>(batches.region[b])];
         for (int j = 0; j < 3; ++j)
           batches.fibre[at * 3 + static_cast<std::size_t>(j)].lane[l] =
-              tissue.fibre.cols() > 0 ? tissue.fibre(j, column) : (j == 0 ? 1.0 : 0.0);
+              given ? tissue.fibre(j, column) : (j == 0 ? 1.0 : 0.0);
         batches.muscle[at].lane[l] = tissue.muscle.size() > 0 ? tissue.muscle[column] : 1.0;
         batches.soft_tissue[at].lane[l] = tissue.soft_tissue.size() > 0 ? tissue.soft_tissue[column] : 0.0;
       }

@@ -27,8 +27,10 @@ struct Batches {
   std::vector<LaneBlock> gradient, weight, fibre, muscle, soft_tissue, pressure_shape, mass_inverse;
 };
 
-/// Throws InputError("fibre-field-size") where the tissue field does not fit the mesh, ("zero-fibre") or
+/// `fibrous`: by region, whether its law has fibres; elsewhere the fibre field is not looked at. Throws
+/// InputError("fibre-field-size") where the tissue field does not fit the mesh, ("zero-fibre") or
 /// ("blending-range") naming cell and point where a value is not admissible.
-Batches make_batches(const Discretisation& discretisation, const TissueField& tissue);
+Batches make_batches(const Discretisation& discretisation, const TissueField& tissue,
+                     const std::vector<bool>& fibrous);
 
 }  // namespace brachium::fem

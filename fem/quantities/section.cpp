@@ -26,6 +26,17 @@ struct Arc {
     return (1 - t) * (1 - 2 * t) * first + 4 * t * (1 - t) * middle + t * (2 * t - 1) * last;
   }
   Vector3d slope(double t) const { return (4 * t - 3) * first + (4 - 8 * t) * middle + (4 * t - 1) * last; }
+  /// Least and greatest value of `along` . x: at the ends, or where the parabola turns.
+  std::array<double, 2> range(const Vector3d& along) const {
+    const double a = along.dot(first), b = along.dot(last);
+    std::array<double, 2> out{std::min(a, b), std::max(a, b)};
+    const double from = along.dot(slope(0.0)), to = along.dot(slope(1.0));
+    if (from * to < 0.0) {
+      const double turn = along.dot(at(from / (from - to)));
+      out = {std::min(out[0], turn), std::max(out[1], turn)};
+    }
+    return out;
+  }
 };
 
 /// Gauss-Legendre rule on [0, 1], exact to degree 7.
@@ -227,10 +238,9 @@ double section_thickness(const Discretisation& discretisation, const Configurati
   const Vector3d along = direction.normalized();
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Arc& arc : rim(discretisation, configuration, point_m, normal)) {
-    for (const Vector3d& x : {arc.first, arc.middle, arc.last}) {
-      low = std::min(low, along.dot(x));
-      high = std::max(high, along.dot(x));
-    }
+    const auto [least, greatest] = arc.range(along);
+    low = std::min(low, least);
+    high = std::max(high, greatest);
   }
   return high - low;
 }

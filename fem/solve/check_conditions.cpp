@@ -83,7 +83,7 @@ std::vector<std::vector<Hold>> check_conditions(const Problem& problem, Findings
                       fmt::format("`{}`: the surface `{}` has no points", c.name, c.surface), "");
           continue;
         }
-      } else {
+      } else if (!moves_bodies_only(c)) {
         check_has_faces(*problem.mesh, c.surface);
       }
       check_values(problem, c, found);
@@ -117,6 +117,7 @@ void check_programme(const Problem& problem, Findings& found) {
         found.error("unknown-condition",
                     fmt::format("{} moves `{}`, which is no boundary condition", in, name),
                     data::suggest(name, names));
+        changes = true;  // is meant to
         continue;
       }
       if (!has_amplitude(problem.conditions[static_cast<std::size_t>(which - names.begin())])) {
@@ -135,6 +136,7 @@ void check_programme(const Problem& problem, Findings& found) {
         found.error("unknown-region",
                     fmt::format("{} activates `{}`, which is no region of the mesh", in, name),
                     data::suggest(name, regions));
+        changes = true;
         continue;
       }
       if (!(value >= 0.0 && value <= 1.0)) {

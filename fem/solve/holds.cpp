@@ -36,8 +36,12 @@ bool is_surface(const data::Mesh& mesh, const std::string& name) {
 
 }  // namespace
 
+bool moves_bodies_only(const BoundaryCondition& condition) {
+  return condition.surface.empty() && std::holds_alternative<RigidMotion>(condition.kind);
+}
+
 bool is_constraint(const BoundaryCondition& condition) {
-  return std::visit(
+  return !moves_bodies_only(condition) && std::visit(
       Overloaded{[](const DeadTraction&) { return false; }, [](const FollowerPressure&) { return false; },
                  [](const BodyForce&) { return false; }, [](const auto&) { return true; }},
       condition.kind);

@@ -39,7 +39,8 @@ struct PrescribedField {
       displacement_m;  ///< 3 x n, columns in the order of Mesh::surface_points; NaN leaves a component free
 };
 
-/// x = centre + R (X - centre) + amplitude * translation, R = rotation about `axis` by amplitude * angle.
+/// x = centre + R (X - centre) + amplitude * translation, R = rotation about `axis` by amplitude * angle. With an empty
+/// surface it moves no node, only the rigid bodies of contacts that move with it.
 struct RigidMotion {
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();

@@ -50,6 +50,7 @@ void put(const fem::Configuration& c, const std::string& prefix, io::StageFileCo
   content.tables[prefix + "dofs"] = column(c.dofs);
   content.tables[prefix + "activation"] = column(c.activation);
   content.tables[prefix + "multiplier"] = column(c.multiplier.reshaped());
+  content.tables[prefix + "contact_multiplier"] = column(c.contact_multiplier);
   content.tables[prefix + "dofs_before"] = column(c.dofs_before);
   content.attributes[prefix + "inverse_dt"] = exact(c.inverse_dt);
   content.attributes[prefix + "viscosity_pa_s"] = exact(c.viscosity_pa_s);
@@ -65,6 +66,7 @@ fem::Configuration configuration_of(const io::StageFileContent& content, const s
   const auto rows = static_cast<Eigen::Index>(number(content.attributes, prefix + "multiplier_rows"));
   if (rows > 0)
     c.multiplier = Eigen::Map<const Eigen::MatrixXd>(multiplier.data(), rows, multiplier.size() / rows);
+  c.contact_multiplier = values_of(content.tables, prefix + "contact_multiplier");
   c.dofs_before = values_of(content.tables, prefix + "dofs_before");
   c.inverse_dt = number(content.attributes, prefix + "inverse_dt");
   c.viscosity_pa_s = number(content.attributes, prefix + "viscosity_pa_s");

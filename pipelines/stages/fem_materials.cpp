@@ -14,9 +14,7 @@
 namespace brachium::pipelines {
 namespace {
 
-using data::Diagnostic;
 using data::InputError;
-using data::Severity;
 
 const std::vector<std::string> kCommon{"regions", "law", "incompressible", "bulk_modulus_pa",
                                        "volumetric_law"};
@@ -41,7 +39,7 @@ std::string source_of(const std::string& set) {
 
 class Reader {
  public:
-  Reader(const Options& entry, const std::string& owner, bool blended, std::vector<Diagnostic>& mistakes)
+  Reader(const Options& entry, const std::string& owner, bool blended, Mistakes& mistakes)
       : entry_(entry), owner_(owner), blended_(blended), mistakes_(mistakes) {}
 
   std::string law() const { return entry_.maybe_text("law").value_or("muscle_tendon"); }
@@ -68,22 +66,14 @@ class Reader {
       out.material = blemker();
     volumetric(out.volumetric);
     if (!good_) return std::nullopt;
-    try {
-      fem::check(out.material);
-    } catch (const InputError& e) {
-      for (Diagnostic d : e.diagnostics()) {
-        d.message = owner_ + ": " + d.message;
-        mistakes_.push_back(std::move(d));
-      }
-      return std::nullopt;
-    }
+    if (!mistakes_.guarded(entry_, owner_ + ": ", [&] { fem::check(out.material); })) return std::nullopt;
     return out;
   }
 
  private:
   void error(const char* code, std::string message, std::string help = {}) {
     good_ = false;
-    mistakes_.push_back({Severity::error, code, std::move(message), std::nullopt, std::move(help)});
+    mistakes_.error(entry_, code, std::move(message), std::move(help));
   }
 
   void show(const std::string& key, double value) {
@@ -108,19 +98,16 @@ class Reader {
   void use_set(const std::string& key, const auto& take) {
     const auto name = entry_.maybe_text(key);
     if (!name) return;
-    try {
-      take(*name);
+    if (mistakes_.guarded(entry_, "", [&] { take(*name); }))
       sources_.push_back(fmt::format("`{}`: {}", *name, source_of(*name)));
-    } catch (const InputError& e) {
+    else
       good_ = false;
-      for (const Diagnostic& d : e.diagnostics()) mistakes_.push_back(d);
-    }
   }
 
   void allow(std::vector<std::string> keys) {
     keys.insert(keys.end(), kCommon.begin(), kCommon.end());
     const std::size_t before = mistakes_.size();
-    only_keys(entry_, keys, fmt::format("{} (law {})", owner_, law()), mistakes_);
+    mistakes_.only_keys(entry_, keys, fmt::format("{} (law {})", owner_, law()));
     good_ = good_ && mistakes_.size() == before;
   }
 
@@ -241,7 +228,7 @@ class Reader {
   const Options& entry_;
   const std::string owner_;
   const bool blended_;
-  std::vector<Diagnostic>& mistakes_;
+  Mistakes& mistakes_;
   bool good_ = true;
   std::vector<std::string> sources_;
   std::string parameters_;
@@ -250,30 +237,25 @@ class Reader {
 }  // namespace
 
 std::vector<fem::RegionMaterial> fem_materials(const Options& options, const data::Mesh& mesh,
-                                               std::vector<Diagnostic>& mistakes, data::Table& notes) {
+                                               Mistakes& mistakes, data::Table& notes) {
   const std::vector<Options>& entries = options.tables("material");
   bool blended = false;
   for (const Options& blend : options.tables("blend")) blended = blended || blend.text("of") == "muscle";
   std::vector<int> entry_of(mesh.regions.size(), -1);
   const auto claim = [&](std::size_t k, std::size_t r) {
     if (entry_of[r] >= 0)
-      mistakes.push_back({Severity::error,
-                          "twice-given",
-                          fmt::format("region `{}` has two materials: entries {} and {} of `material`",
-                                      mesh.regions[r], entry_of[r] + 1, k + 1),
-                          std::nullopt,
-                          {}});
+      mistakes.error(entries[k], "twice-given",
+                     fmt::format("region `{}` has two materials: entries {} and {} of `material`",
+                                 mesh.regions[r], entry_of[r] + 1, k + 1));
     entry_of[r] = static_cast<int>(k);
   };
   for (const bool named : {true, false}) {  // those without names take what is left
     for (std::size_t k = 0; k < entries.size(); ++k) {
       if (entries[k].has("regions") != named) continue;
       std::vector<std::string> regions;
-      try {
+      mistakes.guarded(entries[k], "", [&] {
         regions = regions_of(entries[k], mesh, fmt::format("entry {} of `material`", k + 1));
-      } catch (const InputError& e) {
-        mistakes.insert(mistakes.end(), e.diagnostics().begin(), e.diagnostics().end());
-      }
+      });
       for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
         const bool wanted = std::find(regions.begin(), regions.end(), mesh.regions[r]) != regions.end();
         if (wanted && (named || entry_of[r] < 0)) claim(k, r);
@@ -292,9 +274,9 @@ std::vector<fem::RegionMaterial> fem_materials(const Options& options, const dat
   std::vector<fem::RegionMaterial> out;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     if (entry_of[r] < 0) {
-      mistakes.push_back({Severity::error, "missing-material",
-                          fmt::format("region `{}` has no material", mesh.regions[r]), std::nullopt,
-                          "add an entry of `material` with it in `regions`"});
+      mistakes.error(options, "missing-material",
+                     fmt::format("region `{}` has no material: no entry of `material` names it", mesh.regions[r]),
+                     "add one with it in `regions`");
       continue;
     }
     const auto k = static_cast<std::size_t>(entry_of[r]);

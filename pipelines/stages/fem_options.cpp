@@ -6,100 +6,6 @@
 namespace brachium::pipelines {
 namespace {
 
-std::vector<OptionSpec> round_section_fields() {
-  return {cells_option("core_cells", 2,
-                       "cells along each side of the core of a cross-section; four times as many around"),
-          cells_option("ring_cells", 1, "rings of cells around the core"),
-          number_option("ring_grading", "1", 1.0, above(0.0),
-                        "thickness of the outermost ring over that of the innermost")};
-}
-
-OptionSpec mesh_option() {
-  OptionSpec file = optional_text("file", "mesh file: Gmsh .msh, VTK .vtu or .vtk, FEBio .feb");
-  file.is_file = true;
-  OptionSpec size = vector_option("size_m", "m", "lengths along x, y, z");
-  size.optional = false;
-  OptionSpec cells = vector_option("cells", "1", "cells along x, y, z");
-  cells.optional = false;
-  cells.lower = 1.0;
-  std::vector<OptionSpec> round = round_section_fields();
-  std::vector<OptionSpec> cylinder{
-      required_number("radius_m", "m", above(0.0), "radius (along x where it is elliptic)"),
-      optional_number("radius_y_m", "m", above(0.0), "radius along y; absent: circular"),
-      required_number("length_m", "m", above(0.0), "length along z"),
-      cells_option("cells", 8, "cells along z"),
-      number_option("grading", "1", 1.0, above(0.0), "size of the last cell along z over that of the first"),
-      text_option("region", "cylinder", "name of the region")};
-  std::vector<OptionSpec> spindle{
-      required_number("belly_m", "m", above(0.0), "length of the belly along z"),
-      cells_option("belly_cells", 12, "cells along the belly"),
-      required_number("belly_radius_m", "m", above(0.0), "largest radius"),
-      required_number("tendon_radius_m", "m", above(0.0), "radius of the tendons"),
-      number_option("origin_tendon_m", "m", 0.0, at_least(0.0),
-                    "length of the tendon at the origin; 0: none"),
-      cells_option("origin_tendon_cells", 2, "cells along it"),
-      number_option("insertion_tendon_m", "m", 0.0, at_least(0.0),
-                    "length of the tendon at the insertion; 0: none"),
-      cells_option("insertion_tendon_cells", 2, "cells along it"),
-      number_option("flatness", "1", 1.0, above(0.0), "radius along y over radius along x"),
-      number_option("aponeurosis_thickness_norm", "1", 0.0, between(0.0, 0.9),
-                    "thickness of the sheets on the belly over the local radius; 0: none"),
-      cells_option("aponeurosis_cells", 1, "cells through a sheet"),
-      number_option("aponeurosis_origin_norm", "1", 0.5, between(0.0, 1.0),
-                    "share of the belly that the origin's sheet covers"),
-      number_option("aponeurosis_insertion_norm", "1", 0.5, between(0.0, 1.0),
-                    "share of the belly that the insertion's sheet covers"),
-      number_option("transition_m", "m", 0.0, at_least(0.0),
-                    "length inside the belly over which gamma_M rises from 0 to 1; 0: at once")};
-  for (const OptionSpec& field : round) {
-    cylinder.push_back(field);
-    spindle.push_back(field);
-  }
-  std::vector<OptionSpec> pennate{
-      required_number("length_m", "m", above(0.0), "what each sheet covers along x"),
-      cells_option("length_cells", 8, "cells along it"),
-      required_number("width_m", "m", above(0.0), "width along y"),
-      cells_option("width_cells", 3, "cells along it"),
-      required_number("thickness_m", "m", above(0.0), "distance of the sheets along z"),
-      cells_option("thickness_cells", 4, "cells along the fibres"),
-      required_number("pennation_deg", "deg", between(3.0, 90.0), "angle of the fibres to x"),
-      number_option("aponeurosis_m", "m", 0.0, at_least(0.0),
-                    "thickness of each sheet; 0: no sheets and no tendons"),
-      cells_option("aponeurosis_cells", 1, "cells through a sheet"),
-      number_option("tendon_m", "m", 0.0, at_least(0.0), "length of each tendon beyond its sheet; 0: none"),
-      cells_option("tendon_cells", 2, "cells along a tendon")};
-  OptionSpec mesh = table_option(
-      "mesh",
-      {file,
-       optional_text(
-           "length_unit",
-           "unit of a mesh file's coordinates (m, cm, mm); mesh files do not state it, so it must be given"),
-       text_option("region_array", "region", "VTK files: the cell array that tells regions and surfaces"),
-       map_option("region_numbers", {},
-                  "VTK files: names of the numbers in that array, { muscle = 1, tendon = 2 }"),
-       flag_option("elevate", false,
-                   "add the midside nodes that the element needs (hex8 to hex27, tet4 to tet10); the faces "
-                   "stay as they are"),
-       integer_option("refine", 0, between(0, 5), "how many times every cell is cut into eight"),
-       table_option(
-           "block",
-           {size, cells,
-            vector_option("grading", "1", "size of the last cell over that of the first, along x, y, z"),
-            vector_option("corner_m", "m", "lowest corner; absent: the origin"),
-            text_option("region", "block", "name of the region")},
-           "a generated block; surfaces x0 x1 y0 y1 z0 z1"),
-       table_option("cylinder", std::move(cylinder), "a generated cylinder along z; surfaces z0 z1 side"),
-       table_option("spindle", std::move(spindle),
-                    "a generated fusiform muscle along z; regions tendon_origin, muscle, tendon_insertion "
-                    "(and sheets), surfaces origin, insertion, side, belly"),
-       table_option("pennate", std::move(pennate),
-                    "a generated unipennate muscle; regions muscle, aponeurosis_*, tendon_*, surfaces "
-                    "origin, insertion, deep, superficial, y0, y1, proximal, distal")},
-      "the body: either `file` or one of the generators");
-  mesh.optional = false;
-  return mesh;
-}
-
 OptionSpec material_option() {
   const Bounds positive = above(0.0), any = at_least(0.0);
   return list_option(
@@ -203,12 +109,12 @@ OptionSpec boundary_option() {
   return list_option(
       "boundary",
       {required_text("name", "unique; phases refer to it"),
-       optional_text("surface", "surface or node set of the mesh; not for `weight`"),
+       optional_text("surface", "surface or node set of the mesh; not for `weight`, optional for `rigid_motion`"),
        required_choice(
            "kind",
            {"fixed", "displacement", "rigid_motion", "symmetry", "traction", "force", "pressure", "weight"},
            "fixed: no displacement; displacement: prescribed components; rigid_motion: the surface moves as "
-           "a rigid body; symmetry: none along the surface's normal; "
+           "a rigid body (without a surface: only the bodies of `contact` that move with it do); symmetry: none along the surface's normal; "
            "traction: dead load per reference area; force: dead load in all; pressure: follows the deformed "
            "normal; weight: dead load per reference volume"),
        components, optional_number("x_m", "m", {}, "displacement: along x at amplitude 1; absent: free"),
@@ -223,6 +129,51 @@ OptionSpec boundary_option() {
        optional_number("pressure_pa", "Pa", {}, "pressure: at amplitude 1, against the outward normal"),
        vector_option("force_n_m3", "N/m3", "weight: at amplitude 1")},
       "what holds and loads the body; values are those at amplitude 1, which the phases move");
+}
+
+OptionSpec points_option() {
+  OptionSpec points = optional_number("points_per_direction", "1", between(1.0, 5.0),
+                                      "integration points on each side of a face; absent: 4");
+  points.type = OptionType::integer;
+  return points;
+}
+
+OptionSpec contact_option() {
+  OptionSpec file = optional_text("file", "triangles: closed surface, .stl or .obj, normals outward");
+  file.is_file = true;
+  return list_option(
+      "contact",
+      {required_text("name", "unique"), required_text("surface", "surface of the mesh that may touch the body"),
+       required_choice("shape", {"half_space", "sphere", "cylinder", "capsule", "ellipsoid", "triangles"},
+                       "rigid body; a cylinder has no ends, a capsule ends in half spheres"),
+       vector_option("point_m", "m", "half_space: a point of its plane; cylinder: a point of its axis"),
+       vector_option("normal", "1", "half_space: outward, towards the muscle"),
+       vector_option("centre_m", "m", "sphere, ellipsoid"),
+       optional_number("radius_m", "m", above(0.0), "sphere, cylinder, capsule"),
+       vector_option("axis", "1", "cylinder: its direction"),
+       vector_option("from_m", "m", "capsule: one end of its axis"), vector_option("to_m", "m", "capsule: the other"),
+       vector_option("semi_axes_m", "m", "ellipsoid"),
+       vector_option("first_axis", "1", "ellipsoid: direction of the first semi-axis; absent: x"),
+       vector_option("second_axis", "1", "ellipsoid: of the second, at right angles to it; absent: y"),
+       file, optional_text("length_unit", "triangles: unit of the file's coordinates"),
+       optional_number("turn_deg", "deg", {}, "triangles: turned about `turn_axis` through the file's origin"),
+       vector_option("turn_axis", "1", "triangles: right hand"),
+       vector_option("place_m", "m", "triangles: where the file's origin comes to lie; absent: it stays"),
+       optional_number("grid_spacing_m", "m", above(0.0),
+                       "triangles: spacing of the distance field that stands for them; rounds edges by about as much"),
+       optional_number("grid_margin_m", "m", at_least(0.0),
+                       "triangles: how far the field reaches beyond them; absent: ten spacings"),
+       optional_number("grid_smoothing_m", "m", at_least(0.0), "triangles: width of a Gaussian that rounds facets"),
+       optional_text("moves_with", "condition of kind rigid_motion whose motion the body shares; absent: it rests"),
+       optional_number("penalty_pa_per_m", "Pa/m", above(0.0),
+                       "pressure by penetration; absent: ten times the stiffness of the material over the size of a cell"),
+       optional_number("penetration_tolerance_m", "m", above(0.0),
+                       "augmented Lagrange until no point is deeper than this; absent: what the penalty leaves"),
+       optional_number("smoothing_m", "m", above(0.0),
+                       "width over which the pressure sets in; not with `penetration_tolerance_m`"),
+       points_option()},
+      "frictionless contact with rigid bodies. A contact holds nothing before it is closed: the body must be supported "
+      "without it");
 }
 
 OptionSpec phase_option() {
@@ -246,13 +197,15 @@ OptionSpec output_option() {
       {required_text("name", "becomes the start of its columns"),
        required_choice(
            "kind",
-           {"reaction", "stress_resultant", "volume", "fibre_stretch", "fibre_stress", "active_stress",
+           {"reaction", "stress_resultant", "contact", "volume", "fibre_stretch", "fibre_stress", "active_stress",
             "von_mises", "pressure", "jacobian", "section", "displacement"},
            "reaction: force and moment that a surface's nodes exert on the surroundings; stress_resultant: "
-           "the same from stresses; volume: of regions; fibre_stretch to jacobian: "
+           "the same from stresses; contact: what a rigid body exerts on the surface in contact with it; volume: of "
+           "regions; fibre_stretch to jacobian: "
            "volume-weighted mean, smallest and largest value; section: area and radii (and thickness) of a "
            "cross-section that moves with the material; displacement: of a material point"),
        optional_text("surface", "reaction, stress_resultant"),
+       optional_text("contact", "contact: its name"),
        vector_option("point_m", "m",
                      "moment about this point; section: a point of the plane; displacement: the point; all "
                      "in the undeformed body"),
@@ -297,13 +250,14 @@ OptionSpec solver_option() {
 }
 
 std::vector<OptionSpec> fem_option_specs() {
-  return {mesh_option(),
+  return {fem_mesh_option(),
           choice_option("element", "q2_p1_discontinuous", fem::formulation_names(),
                         "finite element: displacement and pressure spaces"),
           material_option(),
           fibre_option(),
           blend_option(),
           boundary_option(),
+          contact_option(),
           phase_option(),
           output_option(),
           choice_option("save_fields", "all", {"all", "phase_ends", "last", "none"},

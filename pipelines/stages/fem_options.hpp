@@ -10,6 +10,7 @@ namespace brachium::pipelines {
 
 /// All options of the stage, nested tables with their fields.
 std::vector<OptionSpec> fem_option_specs();
+OptionSpec fem_mesh_option();  ///< the table `mesh`
 
 /// The table `solver`, shared by stages that solve continuum problems.
 OptionSpec solver_option();

@@ -7,14 +7,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "fem/solve/holds.hpp"
 #include "pipelines/stages/common.hpp"
 
 namespace brachium::pipelines {
 namespace {
 
-using data::Diagnostic;
 using data::InputError;
-using data::Severity;
 
 bool is_field(const std::string& kind) {
   return kind == "fibre_stretch" || kind == "fibre_stress" || kind == "active_stress" ||
@@ -34,14 +33,10 @@ const Eigen::VectorXd& field_of(const fem::PointFields& fields, const std::strin
   return fields.jacobian;
 }
 
-Eigen::Vector3d vector_or_zero(const Options& o, const std::string& key) {
-  if (!o.has(key)) return Eigen::Vector3d::Zero();
-  const std::vector<double>& v = o.numbers(key);
-  return {v[0], v[1], v[2]};
-}
+}  // namespace
 
 /// One row, column by column.
-class Row {
+class FemQuantities::Row {
  public:
   void text(const std::string& name, const std::string& value) {
     table_.columns.push_back({name, "", std::vector<std::string>{value}});
@@ -62,15 +57,13 @@ class Row {
   data::Table table_{"Wanted quantities by accepted state", {}};
 };
 
-}  // namespace
-
-void check_outputs(const Options& options, const data::Mesh& mesh, std::vector<Diagnostic>& mistakes) {
+void check_outputs(const Options& options, const data::Mesh& mesh, Mistakes& mistakes) {
   std::set<std::string> names;
   for (const Options& entry : options.tables("output")) {
     const std::string name = entry.text("name"), kind = entry.text("kind"),
                       owner = fmt::format("output `{}` (kind {})", name, kind);
     const auto error = [&](const char* code, std::string message, std::string help = {}) {
-      mistakes.push_back({Severity::error, code, std::move(message), std::nullopt, std::move(help)});
+      mistakes.error(entry, code, std::move(message), std::move(help));
     };
     if (!names.insert(name).second) error("twice-given", fmt::format("two outputs are called `{}`", name));
     if (name.empty() ||
@@ -81,6 +74,9 @@ void check_outputs(const Options& options, const data::Mesh& mesh, std::vector<D
     if (kind == "reaction" || kind == "stress_resultant") {
       keys.insert(keys.end(), {"surface", "point_m"});
       needed = {"surface"};
+    } else if (kind == "contact") {
+      keys.push_back("point_m");
+      needed = {"contact"};
     } else if (kind == "volume" || is_field(kind)) {
       keys.push_back("regions");
     } else if (kind == "section") {
@@ -90,19 +86,23 @@ void check_outputs(const Options& options, const data::Mesh& mesh, std::vector<D
       needed = {"point_m"};
     }
     keys.insert(keys.end(), needed.begin(), needed.end());
-    only_keys(entry, keys, owner, mistakes);
-    for (const std::string& key : needed) {
-      if (!entry.has(key)) error("missing-option", fmt::format("{} needs `{}`", owner, key));
-    }
-    try {
-      if (const auto surface = entry.maybe_text("surface"); surface && !mesh.node_sets.contains(*surface))
-        mesh.surface(*surface);
-      regions_of(entry, mesh, owner);
-    } catch (const InputError& e) {
-      mistakes.insert(mistakes.end(), e.diagnostics().begin(), e.diagnostics().end());
+    mistakes.only_keys(entry, keys, owner);
+    for (const std::string& key : needed) mistakes.need(entry, key, owner);
+    mistakes.guarded(entry, owner + ": ", [&] {
+      const auto surface = entry.maybe_text("surface");
+      if (surface && kind == "reaction") fem::condition_points(mesh, *surface);
+      if (surface && kind != "reaction") fem::check_has_faces(mesh, *surface);
+    });
+    mistakes.guarded(entry, "", [&] { regions_of(entry, mesh, owner); });
+    if (const auto contact = entry.maybe_text("contact"); contact && kind == "contact") {
+      std::vector<std::string> contacts;
+      for (const Options& c : options.tables("contact")) contacts.push_back(c.text("name"));
+      if (std::find(contacts.begin(), contacts.end(), *contact) == contacts.end())
+        error("unknown-contact", fmt::format("{} reads `{}`, which is no contact", owner, *contact),
+              data::suggest(*contact, contacts));
     }
     for (const std::string key : {"normal", "direction"}) {
-      if (entry.has(key) && vector_or_zero(entry, key).norm() == 0.0)
+      if (entry.has(key) && vector_of(entry, key).norm() == 0.0)
         error("zero-direction", fmt::format("{}: `{}` has no direction", owner, key));
     }
   }
@@ -110,7 +110,11 @@ void check_outputs(const Options& options, const data::Mesh& mesh, std::vector<D
 
 FemQuantities::FemQuantities(const Options& options, const fem::Problem& problem,
                              const fem::Discretisation& discretisation)
-    : options_(options), problem_(problem), discretisation_(discretisation) {
+    : options_(options),
+      problem_(problem),
+      discretisation_(discretisation),
+      contacts_(problem, discretisation, 1.0, 1.0) {  // penalties are all given: build_fem_problem
+
   const int n_q = discretisation.quadrature().size();
   weights_.resize(static_cast<Eigen::Index>(n_q) * discretisation.cell_count());
   Eigen::MatrixX3d gradient;
@@ -128,26 +132,32 @@ FemQuantities::FemQuantities(const Options& options, const fem::Problem& problem
   }
 }
 
-void FemQuantities::check_places() const {
+void check_places(const Options& options, const fem::Discretisation& discretisation, Mistakes& mistakes) {
   fem::Configuration rest;
-  rest.dofs = Eigen::VectorXd::Zero(discretisation_.dof_count());
-  std::vector<Diagnostic> mistakes;
-  for (const Options& entry : options_.tables("output")) {
-    try {
+  rest.dofs = Eigen::VectorXd::Zero(discretisation.dof_count());
+  for (const Options& entry : options.tables("output")) {
+    mistakes.guarded(entry, fmt::format("output `{}`: ", entry.text("name")), [&] {
       const std::string kind = entry.text("kind");
-      if (kind == "section")
-        fem::section(discretisation_, rest, vector_or_zero(entry, "point_m"),
-                     vector_or_zero(entry, "normal"));
-      if (kind == "displacement")
-        fem::displacement_at(discretisation_, rest, vector_or_zero(entry, "point_m"));
-    } catch (const InputError& e) {
-      for (Diagnostic d : e.diagnostics()) {
-        d.message = fmt::format("output `{}`: {}", entry.text("name"), d.message);
-        mistakes.push_back(std::move(d));
-      }
-    }
+      const Eigen::Vector3d point = vector_of(entry, "point_m"), normal = vector_of(entry, "normal");
+      if (kind == "section" && normal.norm() > 0.0) fem::section(discretisation, rest, point, normal);
+      if (kind == "displacement") fem::displacement_at(discretisation, rest, point);
+    });
   }
-  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+}
+
+void FemQuantities::contact(const Options& entry, const fem::AcceptedState& accepted, Row& row) const {
+  const std::string name = entry.text("name");
+  std::size_t which = 0;
+  while (problem_.contacts[which].name != entry.text("contact")) ++which;
+  Eigen::VectorXd amplitude(static_cast<Eigen::Index>(problem_.conditions.size()));
+  for (std::size_t i = 0; i < problem_.conditions.size(); ++i)
+    amplitude[static_cast<Eigen::Index>(i)] = accepted.state.amplitude.at(problem_.conditions[i].name);
+  const fem::Configuration& at = accepted.state.configuration;
+  const fem::ContactSums sums = contacts_.sums(amplitude, at.dofs, at.contact_multiplier)[which];
+  row.wrench(name, fem::moved({sums.force_n, sums.moment_n_m}, Eigen::Vector3d::Zero(), vector_of(entry, "point_m")));
+  row.number(name + "_area_m2", "m2", sums.area_m2);
+  row.number(name + "_max_Pa", "Pa", sums.greatest_pressure_pa);
+  row.number(name + "_penetration_m", "m", sums.greatest_penetration_m);
 }
 
 data::Table FemQuantities::row(int state, const fem::AcceptedState& accepted,
@@ -173,13 +183,15 @@ data::Table FemQuantities::row(int state, const fem::AcceptedState& accepted,
     if (kind == "reaction") {
       row.wrench(name,
                  fem::wrench(discretisation_, configuration, accepted.internal_force, accepted.external_force,
-                             entry.text("surface"), vector_or_zero(entry, "point_m")));
+                             entry.text("surface"), vector_of(entry, "point_m")));
     } else if (kind == "stress_resultant") {
       row.wrench(name, fem::stress_wrench(problem_, discretisation_, configuration, entry.text("surface"),
-                                          vector_or_zero(entry, "point_m")));
+                                          vector_of(entry, "point_m")));
+    } else if (kind == "contact") {
+      contact(entry, accepted, row);
     } else if (kind == "section") {
       const fem::SectionFigures s = fem::section(
-          discretisation_, configuration, vector_or_zero(entry, "point_m"), vector_or_zero(entry, "normal"));
+          discretisation_, configuration, vector_of(entry, "point_m"), vector_of(entry, "normal"));
       row.number(name + "_area_m2", "m2", s.area_m2);
       row.number(name + "_mean_radius_m", "m", s.mean_radius_m);
       row.number(name + "_least_radius_m", "m", s.least_radius_m);
@@ -187,12 +199,12 @@ data::Table FemQuantities::row(int state, const fem::AcceptedState& accepted,
       if (entry.has("direction")) {
         row.number(
             name + "_thickness_m", "m",
-            fem::section_thickness(discretisation_, configuration, vector_or_zero(entry, "point_m"),
-                                   vector_or_zero(entry, "normal"), vector_or_zero(entry, "direction")));
+            fem::section_thickness(discretisation_, configuration, vector_of(entry, "point_m"),
+                                   vector_of(entry, "normal"), vector_of(entry, "direction")));
       }
     } else if (kind == "displacement") {
       const Eigen::Vector3d u =
-          fem::displacement_at(discretisation_, configuration, vector_or_zero(entry, "point_m"));
+          fem::displacement_at(discretisation_, configuration, vector_of(entry, "point_m"));
       const char* const axes[] = {"x", "y", "z"};
       for (int a = 0; a < 3; ++a) row.number(fmt::format("{}_{}_m", name, axes[a]), "m", u[a]);
     } else {

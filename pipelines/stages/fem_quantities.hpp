@@ -15,7 +15,10 @@ namespace brachium::pipelines {
 
 /// Mistakes of the tables `output`: names given twice, missing or unused keys, surfaces and regions that are
 /// not there.
-void check_outputs(const Options& options, const data::Mesh& mesh, std::vector<data::Diagnostic>& mistakes);
+void check_outputs(const Options& options, const data::Mesh& mesh, Mistakes& mistakes);
+
+/// Points and planes that do not meet the body: what only the discretised body can tell.
+void check_places(const Options& options, const fem::Discretisation& discretisation, Mistakes& mistakes);
 
 /// Reads the wanted quantities off accepted states.
 class FemQuantities {
@@ -23,18 +26,18 @@ class FemQuantities {
   FemQuantities(const Options& options, const fem::Problem& problem,
                 const fem::Discretisation& discretisation);
 
-  /// Throws InputError for points and planes that do not meet the body: what only the discretised body can
-  /// tell.
-  void check_places() const;
-
   /// A table with one row: state, step, phase, phase_time, activations, amplitudes, energy, volume, wanted
   /// quantities.
   data::Table row(int state, const fem::AcceptedState& accepted, const fem::PointFields& fields) const;
 
  private:
+  class Row;
+  void contact(const Options& entry, const fem::AcceptedState& accepted, Row& row) const;
+
   const Options& options_;
   const fem::Problem& problem_;
   const fem::Discretisation& discretisation_;
+  fem::Contacts contacts_;
   Eigen::VectorXd weights_;          ///< reference volume of each quadrature point [m3]
   std::vector<std::string> moved_;   ///< conditions that a phase moves
   std::vector<std::size_t> active_;  ///< regions with an active law

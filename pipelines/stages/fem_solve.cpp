@@ -155,7 +155,6 @@ void run(const StageContext& context, StageOutput& out) {
   const data::Mesh& mesh = *problem.mesh;
   const fem::Discretisation discretisation(problem.mesh, problem.formulation);
   const FemQuantities quantities(options, problem, discretisation);
-  quantities.check_places();
   const FemSurface surface(mesh);
   const std::string save = context.beside.empty() ? std::string("none") : options.text("save_fields");
   FemCheckpoints checkpoints(context.beside.empty()
@@ -254,6 +253,14 @@ void add_fem_stages(Catalogue& catalogue) {
   spec.options = fem_option_specs();
   spec.output = PortType::tables;
   spec.run = run;
+  spec.check = [](const CheckContext& context) -> std::vector<data::Diagnostic> {
+    try {
+      build_fem_problem(*context.options);
+      return {};
+    } catch (const data::InputError& e) {
+      return e.diagnostics();
+    }
+  };
   spec.report = fem_chapter;
   spec.methods = fem_methods;
   catalogue.add(std::move(spec));

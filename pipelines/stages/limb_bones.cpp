@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "data/io/stl.hpp"
+#include "data/io/triangle_file.hpp"
 #include "fem/contact/distance_grid.hpp"
 #include "fem/contact/triangle_tree.hpp"
 #include "pipelines/stages/limb_scene_parts.hpp"
@@ -83,7 +83,7 @@ std::optional<Shape> triangles(const Draft& draft, io::TomlTable& table, const s
   const double smoothing = millimetres(table, "smoothing_mm", true, 0.0);
   if (file.empty() || unit.empty() || !(spacing > 0.0)) return std::nullopt;
   try {
-    const io::TriangleFile read = io::read_stl(draft.folder / file, unit);
+    const io::TriangleFile read = io::read_triangles(draft.folder / file, unit);
     fem::TriangleMesh mesh{draft.to_arm * read.points, read.triangles};
     Shape shape{{}, {bone, moves, mesh.points, mesh.triangles}};
     const fem::TriangleTree tree(std::move(mesh));

@@ -14,20 +14,16 @@
 #include "pipelines/runner.hpp"
 #include "pipelines/stages/fem_quantities.hpp"
 #include "pipelines/stages/fem_surface.hpp"
+#include "stages_fem_support.hpp"
 #include "tests/support/paths.hpp"
 
-namespace brachium::pipelines {
+namespace brachium::pipelines::tests {
 namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const StageSpec& fem_stage() {
-  static const Catalogue catalogue = built_in_catalogue();
-  return *catalogue.find("fem.solve");
-}
 
 /// A block of incompressible neo-Hooke, held so that it can be stretched freely across.
 const std::string stretched_block = R"(
@@ -50,26 +46,6 @@ output = [
   { name = "shear", kind = "von_mises" },
 ]
 )";
-
-StageData solved(const std::string& options) {
-  StageRequest request;
-  request.options = options;
-  return run_stage(fem_stage(), request);
-}
-
-std::string mistakes(const std::string& options) {
-  try {
-    solved(options);
-  } catch (const data::InputError& e) {
-    return data::render(e.diagnostics());
-  }
-  return {};
-}
-
-std::string with(std::string text, const std::string& what, const std::string& instead) {
-  text.replace(text.find(what), what.size(), instead);
-  return text;
-}
 
 /// Uniaxial stretch l of an incompressible neo-Hookean block: F = A mu (l - 1/l^2).
 TEST(FemSolve, AStretchedBlockGivesTheClosedForm) {
@@ -172,7 +148,7 @@ TEST(FemSolve, AParameterOfANamedSetCanBeReplacedAndTheReportShowsIt) {
 
 class FemRun : public ::testing::Test {
  protected:
-  FemRun() : folder_(tests::scratch_dir()) {}
+  FemRun() : folder_(brachium::tests::scratch_dir()) {}
 
   /// Stops the run once `stop_after` states are kept; 0: lets it run.
   RunResult run(const std::string& options, std::size_t stop_after = 0) {
@@ -284,4 +260,4 @@ TEST(FemQuantities, RowsOfOtherColumnsAreNotJoined) {
 }
 
 }  // namespace
-}  // namespace brachium::pipelines
+}  // namespace brachium::pipelines::tests

@@ -7,6 +7,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using tests::block_muscle;
 using tests::body;
 using tests::codes;
@@ -41,7 +42,7 @@ TEST(Check, FindsAllMistakesAtOnce) {
   const auto found = codes(check(p));
   EXPECT_THAT(found, AllOf(Contains("missing-surface"), Contains("unknown-condition"),
                            Contains("activation-range"), Contains("missing-fibres")));
-  EXPECT_THAT(found, Contains("empty-phase"));
+  EXPECT_THAT(found, Not(Contains("empty-phase"))) << "what the first phase is meant to change is only misspelt";
   EXPECT_THROW(solve(p, {}), data::InputError);
 }
 
