@@ -25,7 +25,8 @@ const std::array<std::string, 5> stage_keys{"name", "run", "input", "trials", "e
 
 class Reader {
  public:
-  Reader(const fs::path& file, std::span<const std::string> settings, const Catalogue& catalogue, StageChecks checks)
+  Reader(const fs::path& file, std::span<const std::string> settings, const Catalogue& catalogue,
+         StageChecks checks)
       : catalogue_(catalogue), checks_(checks), root_(io::read_toml(file)) {
     definition_.file = fs::absolute(file).lexically_normal();
     folder_ = definition_.file.parent_path();
@@ -142,13 +143,14 @@ class Reader {
         const std::size_t before = diagnostics_.size();
         stage.options = parse_options(entry.node(), stage.spec->options, fmt::format("stage `{}`", run),
                                       stage_keys, diagnostics_);
-        for_each_file(stage.options, stage.spec->options, [&](const OptionSpec& option, std::string& path,
-                                                                    const data::SourceSpan& where) {
-          path = resolve(path).string();
-          file_exists(path, where, fmt::format("file of option `{}`", option.key));
-        });
+        for_each_file(stage.options, stage.spec->options,
+                      [&](const OptionSpec& option, std::string& path, const data::SourceSpan& where) {
+                        path = resolve(path).string();
+                        file_exists(path, where, fmt::format("file of option `{}`", option.key));
+                      });
         // A key too many leaves the others as they are; what else is wrong leaves options without a value.
-        stage_sound_.push_back(std::all_of(diagnostics_.begin() + static_cast<std::ptrdiff_t>(before), diagnostics_.end(),
+        stage_sound_.push_back(std::all_of(diagnostics_.begin() + static_cast<std::ptrdiff_t>(before),
+                                           diagnostics_.end(),
                                            [](const Diagnostic& d) { return d.code == "unknown-key"; }));
       } else {
         stage_sound_.push_back(false);

@@ -57,8 +57,8 @@ struct Definition {
   const StageDefinition* find(const std::string& stage) const;
 };
 
-/// Whether the stages' own checks (StageSpec::check) are part of reading a definition. They read the files that options
-/// name; a definition is also read to look at it where these are no longer at hand.
+/// Whether the stages' own checks (StageSpec::check) are part of reading a definition. They read the files
+/// that options name; a definition is also read to look at it where these are no longer at hand.
 enum class StageChecks { leave, run };
 
 /// Reads and checks a definition; paths in it are relative to its folder, paths in `settings` to the current

@@ -144,7 +144,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"excluded-channel", "A channel failed the quality thresholds and was left out, as the options say."},
       {"extra-field", "A row of a file has more fields than its header."},
       {"failed-state",
-       "A state of a muscle map could not be solved; the reason says from which states it was tried. A smaller "
+       "A state of a muscle map could not be solved; the reason says from which states it was tried. A "
+       "smaller "
        "range, smaller load steps or a finer mesh may help."},
       {"fibre-field-size",
        "A field of fibres or of tissue shares was made for another mesh or element than the one that is "
@@ -169,7 +170,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"left-out", "A part of the scene does not bear on any wanted quantity and was not modelled."},
       {"length-mismatch", "Signals that belong together have different numbers of samples."},
       {"limb-geometry",
-       "A continuum limb cannot be built: a parameter of a muscle is out of range, or its path meets no place."},
+       "A continuum limb cannot be built: a parameter of a muscle is out of range, or its path meets no "
+       "place."},
       {"limb-range", "A continuum muscle is asked for an angle or activation outside its range."},
       {"linear-order",
        "A sparse solver was asked for a result before the step that it rests on: analyse, factorise, solve."},
@@ -283,7 +285,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"not-a-grid",
        "States do not lie where a surrogate needs them: a full grid with every pair, or the points of a "
        "sparse grid."},
-      {"not-a-muscle-map", "An input is wired to a stage that left no muscle map. Wire it to fem.muscle_map."},
+      {"not-a-muscle-map",
+       "An input is wired to a stage that left no muscle map. Wire it to fem.muscle_map."},
       {"not-a-number", "A field of a file is not a number."},
       {"not-a-run", "A folder is not that of a run: it has no readable result.json."},
       {"not-a-storage-file", "A file is no OpenSim storage file."},
@@ -379,7 +382,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"unknown-choice", "There is no such choice; the message lists those there are."},
       {"unknown-column", "A table of a scene has a column that is not known."},
       {"unknown-condition", "A phase names a boundary condition that is not there."},
-      {"unknown-contact", "A wanted quantity names a contact that the definition does not have; the nearest name is given."},
+      {"unknown-contact",
+       "A wanted quantity names a contact that the definition does not have; the nearest name is given."},
       {"unknown-coordinate", "A name is not that of a joint coordinate of the scene."},
       {"unknown-curve-set", "There is no such set of muscle curves."},
       {"unknown-cutoff", "There is no such convention for cut-off frequencies."},

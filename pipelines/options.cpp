@@ -18,9 +18,10 @@ using io::TomlNode;
 
 /// Endings of option names that are units, longest first so that "rad_s" is not taken for "s".
 constexpr std::array unit_endings{
-    "per_s", "kg_m2", "N_m3", "n_m3", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s", "m_s", "khz", "mhz", "hz",
-    "min",   "rad",      "deg",     "Nm",    "kN",    "kg",   "mg",  "lb",  "ms",  "us",  "mm",  "cm",
-    "Pa",    "kPa",      "MPa",   "pa",   "kpa",  "mpa",  "mV",    "uV",       "uv",      "mv",    "s",     "m",    "g",   "N",   "V",   "norm"};
+    "per_s", "kg_m2", "N_m3", "n_m3", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s",
+    "m_s",   "khz",   "mhz",  "hz",   "min",      "rad",     "deg",   "Nm",    "kN",   "kg",  "mg",
+    "lb",    "ms",    "us",   "mm",   "cm",       "Pa",      "kPa",   "MPa",   "pa",   "kpa", "mpa",
+    "mV",    "uV",    "uv",   "mv",   "s",        "m",       "g",     "N",     "V",    "norm"};
 
 /// An option's name without its unit: "lowpass_hz" -> "lowpass".
 std::string stem_of(const std::string& key) {
@@ -184,8 +185,8 @@ class Reader {
     }
     if (good && spec.length > 0 && values.size() != spec.length) {
       error("wrong-length",
-            fmt::format("`{}` of {} has {} entries, not {}", spec.key, owner_, values.size(), spec.length), node.where,
-            spec.doc);
+            fmt::format("`{}` of {} has {} entries, not {}", spec.key, owner_, values.size(), spec.length),
+            node.where, spec.doc);
       good = false;
     }
     if (!good) return std::nullopt;
@@ -210,7 +211,8 @@ class Reader {
     for (const auto& [key, member] : node.members) {
       if (!is_number(member)) {
         error("wrong-type",
-              fmt::format("`{}.{}` of {} must be a number, not {}", spec.key, key, owner_, io::describe(member.kind)),
+              fmt::format("`{}.{}` of {} must be a number, not {}", spec.key, key, owner_,
+                          io::describe(member.kind)),
               member.where);
         good = false;
       } else {
@@ -355,8 +357,9 @@ TomlNode options_tree(const Options& options, std::span<const OptionSpec> specs)
   return table;
 }
 
-void for_each_file(Options& options, std::span<const OptionSpec> specs,
-                   const std::function<void(const OptionSpec&, std::string&, const data::SourceSpan&)>& visit) {
+void for_each_file(
+    Options& options, std::span<const OptionSpec> specs,
+    const std::function<void(const OptionSpec&, std::string&, const data::SourceSpan&)>& visit) {
   for (const OptionSpec& spec : specs) {
     const auto found = options.values().find(spec.key);
     if (found == options.values().end()) continue;

@@ -12,9 +12,10 @@
 
 namespace brachium::pipelines {
 
-/// Reads the options in `table`, with their places (Options::where). `owner` names it in messages ("stage `excitation` (emg.envelope)"). Keys in
-/// `reserved` belong to the pipeline and are left alone. Options that are absent get their defaults. Mistakes
-/// go to `diagnostics`: unknown-key, wrong-unit, wrong-type, out-of-range, unknown-value, missing-option, wrong-length.
+/// Reads the options in `table`, with their places (Options::where). `owner` names it in messages ("stage
+/// `excitation` (emg.envelope)"). Keys in `reserved` belong to the pipeline and are left alone. Options that
+/// are absent get their defaults. Mistakes go to `diagnostics`: unknown-key, wrong-unit, wrong-type,
+/// out-of-range, unknown-value, missing-option, wrong-length.
 Options parse_options(const io::TomlNode& table, std::span<const OptionSpec> specs, const std::string& owner,
                       std::span<const std::string> reserved, std::vector<data::Diagnostic>& diagnostics);
 
@@ -24,10 +25,11 @@ Options options_from_text(const std::string& toml, const StageSpec& stage);
 /// Options as a TOML table, keys in the order of the specification; numbers round-trip.
 io::TomlNode options_tree(const Options& options, std::span<const OptionSpec> specs);
 
-/// Calls `visit` for every file that the options name (OptionSpec::is_file), also in nested tables, with the place where
-/// it is named; it may change the path.
-void for_each_file(Options& options, std::span<const OptionSpec> specs,
-                   const std::function<void(const OptionSpec&, std::string&, const data::SourceSpan&)>& visit);
+/// Calls `visit` for every file that the options name (OptionSpec::is_file), also in nested tables, with the
+/// place where it is named; it may change the path.
+void for_each_file(
+    Options& options, std::span<const OptionSpec> specs,
+    const std::function<void(const OptionSpec&, std::string&, const data::SourceSpan&)>& visit);
 
 /// One value as TOML would write it: 6.0, "mvc", [1.0, 2.0].
 std::string value_text(const OptionValue& value);

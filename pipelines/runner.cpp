@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
-#include <stdexcept>
 #include <set>
+#include <stdexcept>
 
 #include "data/io/atomic_file.hpp"
 #include "data/io/scene_file.hpp"
@@ -43,9 +43,8 @@ class Run {
  public:
   Run(const Catalogue& catalogue, const RunRequest& request, RunObserver& observer)
       : request_(request),
-        definition_(
-            std::make_shared<Definition>(
-                read_definition(request.definition, request.settings, catalogue, StageChecks::run))),
+        definition_(std::make_shared<Definition>(
+            read_definition(request.definition, request.settings, catalogue, StageChecks::run))),
         folder_(request.out.empty() ? fs::path("runs") / definition_->file.stem() : request.out),
         observer_(folder_.path() / "log.txt", observer),
         digests_(folder_.path() / "digests.json") {
@@ -168,8 +167,7 @@ class Run {
       result_.errors = error.diagnostics();
     } catch (const FailedWithOutput& failure) {
       result_.outcome = Outcome::numerical_failure;
-      result_.errors.push_back({Severity::error, "no-convergence",
-                                failure.what(), std::nullopt,
+      result_.errors.push_back({Severity::error, "no-convergence", failure.what(), std::nullopt,
                                 "what was reached until then is stored, and shown in the report"});
     } catch (const data::ConvergenceFailure& failure) {
       result_.outcome = Outcome::numerical_failure;
@@ -266,7 +264,9 @@ class Run {
       const std::lock_guard lock(mutex);
       observer_.stage_progress(record, fraction, what);
     };
-    context.say = [&](const std::string& line) { observer_.message(fmt::format("{}: {}", stage.name, line)); };
+    context.say = [&](const std::string& line) {
+      observer_.message(fmt::format("{}: {}", stage.name, line));
+    };
     context.made_from = record.fingerprint;
     context.beside = record.output.parent_path() / record.output.stem();
     context.progress(0.0, "");
@@ -341,10 +341,12 @@ class Run {
     parts["program"] = program_version();
     if (!scene_digest_.empty()) parts["scene"] = scene_digest_;
     Options options = stage.options;
-    for_each_file(options, stage.spec->options, [&](const OptionSpec& option, std::string& path, const data::SourceSpan&) {
-      std::string& part = parts[fmt::format("asset.{}", fs::path(path).filename().string())];
-      part += fmt::format("{}{} {}", part.empty() ? "" : ", ", option.key, digests_.of(path));  // files of one name
-    });
+    for_each_file(options, stage.spec->options,
+                  [&](const OptionSpec& option, std::string& path, const data::SourceSpan&) {
+                    std::string& part = parts[fmt::format("asset.{}", fs::path(path).filename().string())];
+                    part += fmt::format("{}{} {}", part.empty() ? "" : ", ", option.key,
+                                        digests_.of(path));  // files of one name
+                  });
     for (const auto& [port, wires] : stage.inputs) {
       for (std::size_t i = 0; i < wires.size(); ++i)
         parts[fmt::format("input.{}.{}", port, i)] = source_text(wires[i]);

@@ -23,13 +23,15 @@ namespace brachium::pipelines {
 
 // ---------------------------------------------------------------- options
 
-/// `table` is one table with the keys of `fields`, `tables` a list of them. `number_map` is a table whose keys the user
-/// chooses (names of regions, of conditions), each with a number; a plain number stands for { "*" = number }.
+/// `table` is one table with the keys of `fields`, `tables` a list of them. `number_map` is a table whose
+/// keys the user chooses (names of regions, of conditions), each with a number; a plain number stands for {
+/// "*" = number }.
 enum class OptionType { number, integer, boolean, text, numbers, texts, table, tables, number_map };
 
 class Options;
-using OptionValue = std::variant<double, std::int64_t, bool, std::string, std::vector<double>,
-                                 std::vector<std::string>, std::vector<Options>, std::map<std::string, double>>;
+using OptionValue =
+    std::variant<double, std::int64_t, bool, std::string, std::vector<double>, std::vector<std::string>,
+                 std::vector<Options>, std::map<std::string, double>>;
 
 /// One option of a stage: everything a user may ask about it.
 struct OptionSpec {
@@ -44,7 +46,7 @@ struct OptionSpec {
   std::vector<std::string> allowed;  ///< admissible texts; empty: any
   std::vector<OptionSpec> fields{};  ///< of a table, for OptionType::table and tables
   std::size_t length = 0;            ///< numbers: so many of them (3: a vector); 0: any
-  bool is_file = false;              ///< text: an existing file, relative to the definition; part of the fingerprint
+  bool is_file = false;  ///< text: an existing file, relative to the definition; part of the fingerprint
 };
 
 /// Validated options: every key of the specification that is required or has a default is present.
@@ -68,9 +70,9 @@ class Options {
   std::optional<double> maybe_number(const std::string& key) const;
   std::optional<std::string> maybe_text(const std::string& key) const;
 
-  /// Where the user wrote it: the value of "key", an entry of its list "key[2]", a name of its table "key.name", or, for
-  /// an empty path, this table. What was not written stands where its list or table does. Not part of the value:
-  /// options are equal wherever they were written.
+  /// Where the user wrote it: the value of "key", an entry of its list "key[2]", a name of its table
+  /// "key.name", or, for an empty path, this table. What was not written stands where its list or table does.
+  /// Not part of the value: options are equal wherever they were written.
   const data::SourceSpan& where(const std::string& path = {}) const;
   void set_where(const std::string& path, data::SourceSpan where) { places_[path] = std::move(where); }
 
@@ -111,8 +113,8 @@ struct StageOutput {
   std::map<std::string, std::string> attributes;
   std::vector<data::Diagnostic> diagnostics;
 
-  /// Why the numbers did not reach their end, where what was reached is worth keeping: the output is stored and shown
-  /// in the report, but the stage counts as failed (exit code 1) and runs again next time.
+  /// Why the numbers did not reach their end, where what was reached is worth keeping: the output is stored
+  /// and shown in the report, but the stage counts as failed (exit code 1) and runs again next time.
   std::optional<std::string> failure;
   /// Names of further files that the stage wrote beside its output (StageContext::beside).
   std::vector<std::string> files;
@@ -134,9 +136,9 @@ struct StageContext {
   std::function<void(const std::string& line)> say;  ///< a line for the log; may be empty
   /// What the output is made from (fingerprint.hpp); empty where a stage runs in memory.
   std::map<std::string, std::string> made_from;
-  /// "<run folder>/03-muscle": how names of further files of this stage begin; empty in memory (none are written then).
-  /// They are written atomically and named in StageOutput::files; "<beside>.restart" is a folder of the stage's own for
-  /// what a later run can go on from.
+  /// "<run folder>/03-muscle": how names of further files of this stage begin; empty in memory (none are
+  /// written then). They are written atomically and named in StageOutput::files; "<beside>.restart" is a
+  /// folder of the stage's own for what a later run can go on from.
   std::filesystem::path beside;
 
   const StageData& input(const std::string& port) const;        ///< the one entry; std::logic_error if absent
@@ -172,8 +174,8 @@ struct StageSpec {
   PortType output = PortType::signals;
   bool needs_scene = false;
   std::function<void(const StageContext&, StageOutput&)> run;
-  /// Mistakes of options that fit the specification one by one and not together, or not with the files they name; each
-  /// with its place (Options::where). May be empty; need not find what only the inputs can tell.
+  /// Mistakes of options that fit the specification one by one and not together, or not with the files they
+  /// name; each with its place (Options::where). May be empty; need not find what only the inputs can tell.
   std::function<std::vector<data::Diagnostic>(const CheckContext&)> check;
   std::function<void(const ReportContext&, report::Section&)> report;  ///< may be empty
   std::function<std::string(const ReportContext&)> methods;            ///< may be empty

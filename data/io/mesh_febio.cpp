@@ -1,6 +1,6 @@
-/// FEBio's .feb files, mesh section of the specifications 2.5 (Geometry), 3.0 and 4.0 (Mesh), and MeshData. The order of
-/// nodes of hex27 is VTK's but for the face centres: 2D planes of FEBio's shape functions (FEHex27) in the
-/// order -y +x +y -x -z +z.
+/// FEBio's .feb files, mesh section of the specifications 2.5 (Geometry), 3.0 and 4.0 (Mesh), and MeshData.
+/// The order of nodes of hex27 is VTK's but for the face centres: 2D planes of FEBio's shape functions
+/// (FEHex27) in the order -y +x +y -x -z +z.
 
 #include <fmt/format.h>
 
@@ -77,7 +77,9 @@ class FebioReader {
     }
     for (const auto& [name, missing] : without_value_) note_missing(name, missing);
     for (const char* name : {"fiber", "mat_axis"}) {
-      if (root.child("Material").find_node([&](const pugi::xml_node& n) { return std::string_view(n.name()) == name; }))
+      if (root.child("Material").find_node([&](const pugi::xml_node& n) {
+            return std::string_view(n.name()) == name;
+          }))
         raw_.note(fmt::format("<{}> within a material was left out: only MeshData are read", name));
     }
     return std::move(raw_);
@@ -240,16 +242,19 @@ class FebioReader {
       if (const auto found = sets->find(name); found != sets->end()) return found->second;
       for (const auto& [other, members] : *sets) known.push_back(other);
     }
-    fail(data, "missing-region", fmt::format("<{}> is about the set `{}`, which the mesh does not have", data.name(), name),
+    fail(data, "missing-region",
+         fmt::format("<{}> is about the set `{}`, which the mesh does not have", data.name(), name),
          data::suggest(name, known));
   }
 
-  /// Place of an entry's member among all cells or points: by its number within the set (lid) or by its id (2.5).
+  /// Place of an entry's member among all cells or points: by its number within the set (lid) or by its id
+  /// (2.5).
   std::size_t member(const pugi::xml_node& entry, const std::vector<int>& set,
                      const std::unordered_map<long long, int>& by_id) const {
     if (!entry.attribute("lid")) {
       const auto found = by_id.find(id_of(entry));
-      if (found == by_id.end()) fail(entry, "mesh-index", fmt::format("<{}> {} does not exist", entry.name(), id_of(entry)));
+      if (found == by_id.end())
+        fail(entry, "mesh-index", fmt::format("<{}> {} does not exist", entry.name(), id_of(entry)));
       return static_cast<std::size_t>(found->second);
     }
     const long long lid = entry.attribute("lid").as_llong();
@@ -258,8 +263,9 @@ class FebioReader {
     return static_cast<std::size_t>(set[static_cast<std::size_t>(lid - 1)]);
   }
 
-  void put(std::map<std::string, Eigen::MatrixXd>& fields, const std::string& name, const pugi::xml_node& entry,
-           std::size_t column, const std::vector<double>& values, std::size_t columns) {
+  void put(std::map<std::string, Eigen::MatrixXd>& fields, const std::string& name,
+           const pugi::xml_node& entry, std::size_t column, const std::vector<double>& values,
+           std::size_t columns) {
     Eigen::MatrixXd& field = fields[name];
     const auto rows = static_cast<Eigen::Index>(values.size());
     if (field.size() == 0) {
@@ -267,7 +273,8 @@ class FebioReader {
       without_value_[name].assign(columns, true);
     }
     if (field.rows() != rows)
-      fail(entry, "mesh-size", fmt::format("an entry of `{}` has {} numbers, others have {}", name, rows, field.rows()));
+      fail(entry, "mesh-size",
+           fmt::format("an entry of `{}` has {} numbers, others have {}", name, rows, field.rows()));
     field.col(static_cast<Eigen::Index>(column)) = Eigen::Map<const Eigen::VectorXd>(values.data(), rows);
     without_value_[name][column] = false;
   }
@@ -283,11 +290,13 @@ class FebioReader {
   void refuse_computed(const pugi::xml_node& data) const {
     const bool generator = data.attribute("generator") || (data.attribute("name") && data.attribute("type"));
     if (generator)
-      fail(data, "mesh-unsupported", fmt::format("<{}> is left to FEBio to compute, not given by values", data.name()),
+      fail(data, "mesh-unsupported",
+           fmt::format("<{}> is left to FEBio to compute, not given by values", data.name()),
            "write the values into the file");
   }
 
-  /// Fibres, axes, and tables of the user's by cell. `mat_axis` gives two fields: a, along which FEBio's fibres lie, and d.
+  /// Fibres, axes, and tables of the user's by cell. `mat_axis` gives two fields: a, along which FEBio's
+  /// fibres lie, and d.
   void read_element_data(const pugi::xml_node& data) {
     const std::string kind = kind_of(data);
     refuse_computed(data);
@@ -299,8 +308,9 @@ class FebioReader {
       const std::size_t cell = member(entry, set, cell_), cells = raw_.types.size();
       bool parts = false;
       const pugi::xml_node axes = entry.child("mat_axis") ? entry.child("mat_axis") : entry;
-      for (const auto& [part, name] : {std::pair{entry.child("fiber"), "fiber"}, std::pair{axes.child("a"), "mat_axis_a"},
-                                       std::pair{axes.child("d"), "mat_axis_d"}}) {
+      for (const auto& [part, name] :
+           {std::pair{entry.child("fiber"), "fiber"}, std::pair{axes.child("a"), "mat_axis_a"},
+            std::pair{axes.child("d"), "mat_axis_d"}}) {
         if (!part) continue;
         parts = true;
         put(raw_.cell_fields, name, entry, cell, numbers<double>(part), cells);
@@ -314,7 +324,8 @@ class FebioReader {
     const std::vector<int>& set = set_of(data, "node_set", raw_.node_sets, {});
     for (const pugi::xml_node entry : data.children()) {
       if (entry.type() != pugi::node_element) continue;
-      put(raw_.point_fields, kind_of(data), entry, member(entry, set, point_), numbers<double>(entry), raw_.points.size());
+      put(raw_.point_fields, kind_of(data), entry, member(entry, set, point_), numbers<double>(entry),
+          raw_.points.size());
     }
   }
 

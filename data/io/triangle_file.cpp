@@ -34,9 +34,11 @@ class Gathered {
                              "export the surface of the body");
     TriangleFile out;
     out.points.resize(3, static_cast<Eigen::Index>(points_.size()));
-    for (std::size_t p = 0; p < points_.size(); ++p) out.points.col(static_cast<Eigen::Index>(p)) = scale * points_[p];
+    for (std::size_t p = 0; p < points_.size(); ++p)
+      out.points.col(static_cast<Eigen::Index>(p)) = scale * points_[p];
     out.triangles.resize(3, static_cast<Eigen::Index>(triangles_.size()));
-    for (std::size_t t = 0; t < triangles_.size(); ++t) out.triangles.col(static_cast<Eigen::Index>(t)) = triangles_[t];
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      out.triangles.col(static_cast<Eigen::Index>(t)) = triangles_[t];
     return out;
   }
 
@@ -48,7 +50,8 @@ class Gathered {
 
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
-/// A binary file may begin with `solid` as well; no text holds a zero byte, and no count of triangles is without one.
+/// A binary file may begin with `solid` as well; no text holds a zero byte, and no count of triangles is
+/// without one.
 bool is_binary_stl(const MeshCursor& in) {
   return !in.text().starts_with("solid") || in.text().find('\0') < kStlHeader;
 }
@@ -57,7 +60,8 @@ void read_binary_stl(MeshCursor& in, Gathered& out) {
   in.set_binary(true);
   in.need(kStlHeader, "the header");
   in.seek(kStlHeader - sizeof(std::uint32_t));
-  const std::size_t count = in.checked_count(in.raw<std::uint32_t>("the number of triangles"), "triangles", kStlTriangle);
+  const std::size_t count =
+      in.checked_count(in.raw<std::uint32_t>("the number of triangles"), "triangles", kStlTriangle);
   for (std::size_t t = 0; t < count; ++t) {
     in.need(kStlTriangle, "a triangle");
     const std::size_t start = in.at();
@@ -117,7 +121,8 @@ int obj_index(const MeshCursor& in, std::size_t at, std::string_view word, std::
     in.fail_at(at, "mesh-syntax", fmt::format("`{}` is no corner of a face", word.substr(0, 40)));
   const long long from_zero = index < 0 ? static_cast<long long>(points) + index : index - 1;
   if (from_zero < 0 || from_zero >= static_cast<long long>(points))
-    in.fail_at(at, "mesh-index", fmt::format("a face names point {}, and {} points came before it", index, points));
+    in.fail_at(at, "mesh-index",
+               fmt::format("a face names point {}, and {} points came before it", index, points));
   return static_cast<int>(from_zero);
 }
 
@@ -146,9 +151,11 @@ void read_obj(MeshCursor& in, Gathered& out) {
       out.point(x, false);
       in.seek(behind);
     } else if (words[0] == "f") {
-      if (words.size() < 4) in.fail_at(at, "mesh-syntax", fmt::format("a face has {} corners", words.size() - 1));
+      if (words.size() < 4)
+        in.fail_at(at, "mesh-syntax", fmt::format("a face has {} corners", words.size() - 1));
       std::vector<int> corner;
-      for (std::size_t k = 1; k < words.size(); ++k) corner.push_back(obj_index(in, at, words[k], out.point_count()));
+      for (std::size_t k = 1; k < words.size(); ++k)
+        corner.push_back(obj_index(in, at, words[k], out.point_count()));
       for (std::size_t k = 2; k < corner.size(); ++k) out.triangle(corner[0], corner[k - 1], corner[k]);
     }
   }
@@ -162,9 +169,10 @@ TriangleFile read_triangles(const std::filesystem::path& file, const std::string
   const double scale = metres_per_unit(file, unit);
   const std::string extension = file.extension().string();
   if (extension != ".stl" && extension != ".obj")
-    throw data::InputError("mesh-unsupported",
-                           fmt::format("`{}`: `{}` is no format of triangles that can be read", file.string(), extension),
-                           "known: .stl, .obj");
+    throw data::InputError(
+        "mesh-unsupported",
+        fmt::format("`{}`: `{}` is no format of triangles that can be read", file.string(), extension),
+        "known: .stl, .obj");
   MeshCursor in(file);
   Gathered gathered;
   if (extension == ".obj")

@@ -41,10 +41,11 @@ bool moves_bodies_only(const BoundaryCondition& condition) {
 }
 
 bool is_constraint(const BoundaryCondition& condition) {
-  return !moves_bodies_only(condition) && std::visit(
-      Overloaded{[](const DeadTraction&) { return false; }, [](const FollowerPressure&) { return false; },
-                 [](const BodyForce&) { return false; }, [](const auto&) { return true; }},
-      condition.kind);
+  return !moves_bodies_only(condition) &&
+         std::visit(Overloaded{[](const DeadTraction&) { return false; },
+                               [](const FollowerPressure&) { return false; },
+                               [](const BodyForce&) { return false; }, [](const auto&) { return true; }},
+                    condition.kind);
 }
 
 bool has_amplitude(const BoundaryCondition& condition) {
@@ -126,8 +127,8 @@ std::vector<Hold> holds_of(const Problem& problem, int condition) {
                        const auto column = static_cast<Eigen::Index>(k);
                        return column < x.displacement_m.cols() && !std::isnan(x.displacement_m(i, column));
                      },
-                     [](const RigidMotion&) { return true; },
-                     [](const GuidedMotion&) { return true; }, [](const auto&) { return false; }},
+                     [](const RigidMotion&) { return true; }, [](const GuidedMotion&) { return true; },
+                     [](const auto&) { return false; }},
           c.kind);
       if (held) hold(k, Eigen::Vector3d::Unit(i));
     }

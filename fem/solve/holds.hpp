@@ -20,7 +20,8 @@ struct Hold {
 
 /// Holds displacements, as opposed to loading.
 bool is_constraint(const BoundaryCondition& condition);
-/// A rigid motion without a surface: it moves the rigid bodies that are in contact with the muscle, and no node.
+/// A rigid motion without a surface: it moves the rigid bodies that are in contact with the muscle, and no
+/// node.
 bool moves_bodies_only(const BoundaryCondition& condition);
 /// Moves with an amplitude of the programme.
 bool has_amplitude(const BoundaryCondition& condition);

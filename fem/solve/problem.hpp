@@ -39,8 +39,8 @@ struct PrescribedField {
       displacement_m;  ///< 3 x n, columns in the order of Mesh::surface_points; NaN leaves a component free
 };
 
-/// x = centre + R (X - centre) + amplitude * translation, R = rotation about `axis` by amplitude * angle. With an empty
-/// surface it moves no node, only the rigid bodies of contacts that move with it.
+/// x = centre + R (X - centre) + amplitude * translation, R = rotation about `axis` by amplitude * angle.
+/// With an empty surface it moves no node, only the rigid bodies of contacts that move with it.
 struct RigidMotion {
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
@@ -48,9 +48,10 @@ struct RigidMotion {
   double angle_rad = 0.0;
 };
 
-/// A rigid motion along places that are listed: x = place(a) + R(angle(a)) (X - centre), R about `axis`. Between the
-/// amplitudes listed, place and angle are cubic (Hermite, slopes of the parabola through three neighbours); beyond the
-/// ends they stay. The first amplitude is 0, at which the body is where the mesh has it: place = centre, angle = 0.
+/// A rigid motion along places that are listed: x = place(a) + R(angle(a)) (X - centre), R about `axis`.
+/// Between the amplitudes listed, place and angle are cubic (Hermite, slopes of the parabola through three
+/// neighbours); beyond the ends they stay. The first amplitude is 0, at which the body is where the mesh has
+/// it: place = centre, angle = 0.
 struct GuidedMotion {
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
@@ -84,8 +85,8 @@ struct BodyForce {
 struct BoundaryCondition {
   std::string name;     ///< unique
   std::string surface;  ///< surface or node set of the mesh; empty for a body force
-  std::variant<Fixed, PrescribedDisplacement, PrescribedField, RigidMotion, GuidedMotion, SymmetryPlane, DeadTraction,
-               FollowerPressure, BodyForce>
+  std::variant<Fixed, PrescribedDisplacement, PrescribedField, RigidMotion, GuidedMotion, SymmetryPlane,
+               DeadTraction, FollowerPressure, BodyForce>
       kind;
 };
 
@@ -109,7 +110,7 @@ struct Problem {
   std::vector<RegionMaterial> materials;  ///< one per region of the mesh, in its order
   TissueField tissue;                     ///< fibres and blending at the cells' quadrature points
   std::vector<BoundaryCondition> conditions;
-  std::vector<Contact> contacts;          ///< with rigid bodies
+  std::vector<Contact> contacts;  ///< with rigid bodies
   std::vector<Phase> programme;
 };
 

@@ -29,7 +29,8 @@ class ConditionReader {
     else if (kind_ == "symmetry")
       condition.kind = fem::SymmetryPlane{};
     else if (kind_ == "traction" || kind_ == "force")
-      condition.kind = fem::DeadTraction{vector(kind_ == "force" ? "force_n" : "traction_pa"), kind_ == "force"};
+      condition.kind =
+          fem::DeadTraction{vector(kind_ == "force" ? "force_n" : "traction_pa"), kind_ == "force"};
     else if (kind_ == "pressure")
       condition.kind = pressure();
     else
@@ -57,7 +58,8 @@ class ConditionReader {
     fem::Fixed fixed;
     if (!entry_.has("components")) return fixed;
     fixed.components = {false, false, false};
-    for (const std::string& c : entry_.texts("components")) fixed.components[static_cast<std::size_t>(c[0] - 'x')] = true;
+    for (const std::string& c : entry_.texts("components"))
+      fixed.components[static_cast<std::size_t>(c[0] - 'x')] = true;
     return fixed;
   }
 
@@ -90,7 +92,8 @@ class ConditionReader {
     } else {
       for (const std::string key : {"centre_m", "axis"}) {
         if (entry_.has(key))
-          mistakes_.error(entry_, "unused-option", fmt::format("{} has no use for `{}` without an angle", owner_, key),
+          mistakes_.error(entry_, "unused-option",
+                          fmt::format("{} has no use for `{}` without an angle", owner_, key),
                           "give `angle_deg` beside it");
       }
     }
@@ -113,7 +116,8 @@ class ConditionReader {
 
 std::vector<fem::BoundaryCondition> fem_conditions(const Options& options, Mistakes& mistakes) {
   std::vector<fem::BoundaryCondition> conditions;
-  for (const Options& entry : options.tables("boundary")) conditions.push_back(ConditionReader(entry, mistakes).read());
+  for (const Options& entry : options.tables("boundary"))
+    conditions.push_back(ConditionReader(entry, mistakes).read());
   return conditions;
 }
 
@@ -129,17 +133,19 @@ std::vector<fem::Phase> fem_programme(const Options& options, const data::Mesh& 
       if (name != "*") phase.amplitude[name] = value;
     }
     if (amplitude.contains("*"))
-      mistakes.error(entry, "missing-option",
-                     fmt::format("phase `{}`: `amplitude` needs the names of the conditions it moves", phase.name),
-                     "amplitude = { pull = 1.0 }");
+      mistakes.error(
+          entry, "missing-option",
+          fmt::format("phase `{}`: `amplitude` needs the names of the conditions it moves", phase.name),
+          "amplitude = { pull = 1.0 }");
     const auto& activation = entry.number_map("activation");
     if (const auto all = activation.find("*"); all != activation.end() && known) {
       for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
         if (fem::is_active(materials[r].material)) phase.activation[mesh.regions[r]] = all->second;
       }
       if (phase.activation.empty())
-        mistakes.error(entry, "passive-material",
-                       fmt::format("phase `{}` sets `activation`, but no region has an active law", phase.name));
+        mistakes.error(
+            entry, "passive-material",
+            fmt::format("phase `{}` sets `activation`, but no region has an active law", phase.name));
     }
     for (const auto& [region, value] : activation) {
       if (region != "*") phase.activation[region] = value;

@@ -85,7 +85,8 @@ class ContactReader {
     e.semi_axes_m = vector("semi_axes_m");
     keys_.insert(keys_.end(), {"first_axis", "second_axis"});
     if (!entry_.has("first_axis") && !entry_.has("second_axis")) return e;
-    const Eigen::Vector3d first = vector("first_axis").normalized(), second = vector("second_axis").normalized();
+    const Eigen::Vector3d first = vector("first_axis").normalized(),
+                          second = vector("second_axis").normalized();
     e.axes << first, second, first.cross(second);  // fem::check says where they are not orthogonal
     return e;
   }
@@ -94,8 +95,10 @@ class ContactReader {
     keys_.insert(keys_.end(), {"file", "length_unit", "place_m", "turn_axis", "turn_deg", "grid_spacing_m",
                                "grid_margin_m", "grid_smoothing_m"});
     const bool named = mistakes_.need(entry_, "file", owner_);
-    const bool unit = mistakes_.need(entry_, "length_unit", owner_, "such files do not state their unit: give \"mm\", or whatever it is");
-    const bool spacing = mistakes_.need(entry_, "grid_spacing_m", owner_, "a tenth of the smallest radius that matters is a start");
+    const bool unit = mistakes_.need(entry_, "length_unit", owner_,
+                                     "such files do not state their unit: give \"mm\", or whatever it is");
+    const bool spacing = mistakes_.need(entry_, "grid_spacing_m", owner_,
+                                        "a tenth of the smallest radius that matters is a start");
     const Eigen::Matrix3d turn = rotation();
     if (!named || !unit || !spacing) return fem::HalfSpace{};
     fem::TriangleBody body;
@@ -106,12 +109,14 @@ class ContactReader {
       body.grid = std::make_shared<const fem::DistanceGrid>(
           fem::TriangleTree(std::move(mesh)), h, entry_.maybe_number("grid_margin_m").value_or(10.0 * h),
           entry_.maybe_number("grid_smoothing_m").value_or(0.0));
-      notes_.push_back({data::Severity::note, "contact-grid",
-                        fmt::format("contact `{}`: {} triangles stand as a distance field of {} x {} x {} samples, at most "
-                                    "{:.3g} m from them", entry_.text("name"), file.triangles.cols(),
-                                    body.grid->samples()[0], body.grid->samples()[1], body.grid->samples()[2],
-                                    body.grid->greatest_error_m()),
-                        std::nullopt, ""});
+      notes_.push_back(
+          {data::Severity::note, "contact-grid",
+           fmt::format(
+               "contact `{}`: {} triangles stand as a distance field of {} x {} x {} samples, at most "
+               "{:.3g} m from them",
+               entry_.text("name"), file.triangles.cols(), body.grid->samples()[0], body.grid->samples()[1],
+               body.grid->samples()[2], body.grid->greatest_error_m()),
+           std::nullopt, ""});
     });
     return body.grid ? fem::RigidShape(body) : fem::RigidShape(fem::HalfSpace{});
   }
@@ -119,25 +124,34 @@ class ContactReader {
   Eigen::Matrix3d rotation() {
     if (!entry_.has("turn_deg") && !entry_.has("turn_axis")) return Eigen::Matrix3d::Identity();
     const std::string beside = "the two go together";
-    if (!mistakes_.need(entry_, "turn_deg", owner_, beside) || !mistakes_.need(entry_, "turn_axis", owner_, beside))
+    if (!mistakes_.need(entry_, "turn_deg", owner_, beside) ||
+        !mistakes_.need(entry_, "turn_axis", owner_, beside))
       return Eigen::Matrix3d::Identity();
     const Eigen::Vector3d axis = vector_of(entry_, "turn_axis");
     if (axis.norm() == 0.0)
       mistakes_.error(entry_, "zero-direction", owner_ + ": `turn_axis` has no direction");
-    return Eigen::AngleAxisd(entry_.number("turn_deg") * std::numbers::pi / 180.0, axis.normalized()).toRotationMatrix();
+    return Eigen::AngleAxisd(entry_.number("turn_deg") * std::numbers::pi / 180.0, axis.normalized())
+        .toRotationMatrix();
   }
 
   const Options& entry_;
   const std::string shape_, owner_;
   Mistakes& mistakes_;
   std::vector<data::Diagnostic>& notes_;
-  std::vector<std::string> keys_{"name", "surface", "shape", "moves_with", "penalty_pa_per_m", "smoothing_m",
-                                 "penetration_tolerance_m", "points_per_direction"};
+  std::vector<std::string> keys_{"name",
+                                 "surface",
+                                 "shape",
+                                 "moves_with",
+                                 "penalty_pa_per_m",
+                                 "smoothing_m",
+                                 "penetration_tolerance_m",
+                                 "points_per_direction"};
 };
 
 }  // namespace
 
-std::vector<fem::Contact> fem_contacts(const Options& options, Mistakes& mistakes, std::vector<data::Diagnostic>& notes) {
+std::vector<fem::Contact> fem_contacts(const Options& options, Mistakes& mistakes,
+                                       std::vector<data::Diagnostic>& notes) {
   std::vector<fem::Contact> contacts;
   std::set<std::string> names;
   for (const Options& entry : options.tables("contact")) {

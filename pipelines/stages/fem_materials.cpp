@@ -274,9 +274,10 @@ std::vector<fem::RegionMaterial> fem_materials(const Options& options, const dat
   std::vector<fem::RegionMaterial> out;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     if (entry_of[r] < 0) {
-      mistakes.error(options, "missing-material",
-                     fmt::format("region `{}` has no material: no entry of `material` names it", mesh.regions[r]),
-                     "add one with it in `regions`");
+      mistakes.error(
+          options, "missing-material",
+          fmt::format("region `{}` has no material: no entry of `material` names it", mesh.regions[r]),
+          "add one with it in `regions`");
       continue;
     }
     const auto k = static_cast<std::size_t>(entry_of[r]);

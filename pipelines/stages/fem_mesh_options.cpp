@@ -94,10 +94,11 @@ OptionSpec fem_mesh_option() {
        table_option("spindle", std::move(spindle),
                     "a generated fusiform muscle along z; regions tendon_origin, muscle, tendon_insertion "
                     "(and sheets), surfaces origin, insertion, side, belly"),
-       table_option("pennate", std::move(pennate),
-                    "a generated unipennate muscle; regions muscle, aponeurosis_*, tendon_*, surfaces "
-                    "origin, insertion, deep, superficial, y0, y1, proximal, distal, fields fibre (along the cells' "
-                    "second lines) and gamma_M")},
+       table_option(
+           "pennate", std::move(pennate),
+           "a generated unipennate muscle; regions muscle, aponeurosis_*, tendon_*, surfaces "
+           "origin, insertion, deep, superficial, y0, y1, proximal, distal, fields fibre (along the cells' "
+           "second lines) and gamma_M")},
       "the body: either `file` or one of the generators");
   mesh.optional = false;
   return mesh;

@@ -77,7 +77,8 @@ data::SourceSpan place_of(const data::Diagnostic& finding, const Options& option
   for (const Name& name : names_in(finding.message)) {
     if (const Options* entry = entry_of(options, name)) return place_in(*entry, finding.message);
   }
-  if (finding.code == "unsupported-motion" || finding.code == "pressure-undetermined") return options.where("boundary");
+  if (finding.code == "unsupported-motion" || finding.code == "pressure-undetermined")
+    return options.where("boundary");
   if (finding.code == "empty-programme") return options.where("phase");
   if (finding.code == "missing-fibres" || finding.code == "fibre-not-unit") return options.where("fibre");
   if (finding.code.starts_with("mesh-") || finding.code.ends_with("-mesh")) return options.where("mesh");
@@ -88,7 +89,8 @@ void Mistakes::error(const Options& entry, std::string code, std::string message
   take(data::InputError(std::move(code), std::move(message), std::move(help)), entry);
 }
 
-void Mistakes::take(const std::vector<data::Diagnostic>& found, const Options& entry, const std::string& prefix) {
+void Mistakes::take(const std::vector<data::Diagnostic>& found, const Options& entry,
+                    const std::string& prefix) {
   for (data::Diagnostic d : found) {
     d.message = prefix + d.message;
     if (!d.where) {
@@ -108,7 +110,8 @@ void Mistakes::take_checked(const std::vector<data::Diagnostic>& found, const Op
   }
 }
 
-void Mistakes::only_keys(const Options& entry, const std::vector<std::string>& allowed, const std::string& owner) {
+void Mistakes::only_keys(const Options& entry, const std::vector<std::string>& allowed,
+                         const std::string& owner) {
   for (const auto& [key, value] : entry.values()) {
     if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
     error(entry, "unused-option", fmt::format("{} has no use for `{}`", owner, key),
@@ -116,7 +119,8 @@ void Mistakes::only_keys(const Options& entry, const std::vector<std::string>& a
   }
 }
 
-bool Mistakes::need(const Options& entry, const std::string& key, const std::string& owner, const std::string& help) {
+bool Mistakes::need(const Options& entry, const std::string& key, const std::string& owner,
+                    const std::string& help) {
   if (entry.has(key)) return true;
   error(entry, "missing-option", fmt::format("{} needs `{}`", owner, key), help);
   return false;

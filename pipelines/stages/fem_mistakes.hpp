@@ -8,12 +8,12 @@
 
 namespace brachium::pipelines {
 
-/// Findings name things in backticks. Where in `entry` the last of them stands that is a text, a name or a key there;
-/// the entry itself where none does.
+/// Findings name things in backticks. Where in `entry` the last of them stands that is a text, a name or a
+/// key there; the entry itself where none does.
 data::SourceSpan place_in(const Options& entry, const std::string& message);
 
-/// Where in the options of fem.solve a finding of fem::check belongs: in the condition, contact, phase or material that
-/// it names first.
+/// Where in the options of fem.solve a finding of fem::check belongs: in the condition, contact, phase or
+/// material that it names first.
 data::SourceSpan place_of(const data::Diagnostic& finding, const Options& options);
 
 class Mistakes {
@@ -30,7 +30,8 @@ class Mistakes {
   /// Keys of `entry` beside `allowed`: unused-option.
   void only_keys(const Options& entry, const std::vector<std::string>& allowed, const std::string& owner);
   /// false where `entry` lacks the key: missing-option.
-  bool need(const Options& entry, const std::string& key, const std::string& owner, const std::string& help = {});
+  bool need(const Options& entry, const std::string& key, const std::string& owner,
+            const std::string& help = {});
 
   /// Runs `work`; what it throws is taken. Whether nothing was thrown.
   template <class Work>

@@ -109,12 +109,14 @@ OptionSpec boundary_option() {
   return list_option(
       "boundary",
       {required_text("name", "unique; phases refer to it"),
-       optional_text("surface", "surface or node set of the mesh; not for `weight`, optional for `rigid_motion`"),
+       optional_text("surface",
+                     "surface or node set of the mesh; not for `weight`, optional for `rigid_motion`"),
        required_choice(
            "kind",
            {"fixed", "displacement", "rigid_motion", "symmetry", "traction", "force", "pressure", "weight"},
            "fixed: no displacement; displacement: prescribed components; rigid_motion: the surface moves as "
-           "a rigid body (without a surface: only the bodies of `contact` that move with it do); symmetry: none along the surface's normal; "
+           "a rigid body (without a surface: only the bodies of `contact` that move with it do); symmetry: "
+           "none along the surface's normal; "
            "traction: dead load per reference area; force: dead load in all; pressure: follows the deformed "
            "normal; weight: dead load per reference volume"),
        components, optional_number("x_m", "m", {}, "displacement: along x at amplitude 1; absent: free"),
@@ -143,7 +145,8 @@ OptionSpec contact_option() {
   file.is_file = true;
   return list_option(
       "contact",
-      {required_text("name", "unique"), required_text("surface", "surface of the mesh that may touch the body"),
+      {required_text("name", "unique"),
+       required_text("surface", "surface of the mesh that may touch the body"),
        required_choice("shape", {"half_space", "sphere", "cylinder", "capsule", "ellipsoid", "triangles"},
                        "rigid body; a cylinder has no ends, a capsule ends in half spheres"),
        vector_option("point_m", "m", "half_space: a point of its plane; cylinder: a point of its axis"),
@@ -151,28 +154,37 @@ OptionSpec contact_option() {
        vector_option("centre_m", "m", "sphere, ellipsoid"),
        optional_number("radius_m", "m", above(0.0), "sphere, cylinder, capsule"),
        vector_option("axis", "1", "cylinder: its direction"),
-       vector_option("from_m", "m", "capsule: one end of its axis"), vector_option("to_m", "m", "capsule: the other"),
+       vector_option("from_m", "m", "capsule: one end of its axis"),
+       vector_option("to_m", "m", "capsule: the other"),
        vector_option("semi_axes_m", "m", "ellipsoid"),
        vector_option("first_axis", "1", "ellipsoid: direction of the first semi-axis; absent: x"),
        vector_option("second_axis", "1", "ellipsoid: of the second, at right angles to it; absent: y"),
-       file, optional_text("length_unit", "triangles: unit of the file's coordinates"),
-       optional_number("turn_deg", "deg", {}, "triangles: turned about `turn_axis` through the file's origin"),
+       file,
+       optional_text("length_unit", "triangles: unit of the file's coordinates"),
+       optional_number("turn_deg", "deg", {},
+                       "triangles: turned about `turn_axis` through the file's origin"),
        vector_option("turn_axis", "1", "triangles: right hand"),
        vector_option("place_m", "m", "triangles: where the file's origin comes to lie; absent: it stays"),
-       optional_number("grid_spacing_m", "m", above(0.0),
-                       "triangles: spacing of the distance field that stands for them; rounds edges by about as much"),
+       optional_number(
+           "grid_spacing_m", "m", above(0.0),
+           "triangles: spacing of the distance field that stands for them; rounds edges by about as much"),
        optional_number("grid_margin_m", "m", at_least(0.0),
                        "triangles: how far the field reaches beyond them; absent: ten spacings"),
-       optional_number("grid_smoothing_m", "m", at_least(0.0), "triangles: width of a Gaussian that rounds facets"),
-       optional_text("moves_with", "condition of kind rigid_motion whose motion the body shares; absent: it rests"),
+       optional_number("grid_smoothing_m", "m", at_least(0.0),
+                       "triangles: width of a Gaussian that rounds facets"),
+       optional_text("moves_with",
+                     "condition of kind rigid_motion whose motion the body shares; absent: it rests"),
        optional_number("penalty_pa_per_m", "Pa/m", above(0.0),
-                       "pressure by penetration; absent: ten times the stiffness of the material over the size of a cell"),
-       optional_number("penetration_tolerance_m", "m", above(0.0),
-                       "augmented Lagrange until no point is deeper than this; absent: what the penalty leaves"),
+                       "pressure by penetration; absent: ten times the stiffness of the material over the "
+                       "size of a cell"),
+       optional_number(
+           "penetration_tolerance_m", "m", above(0.0),
+           "augmented Lagrange until no point is deeper than this; absent: what the penalty leaves"),
        optional_number("smoothing_m", "m", above(0.0),
                        "width over which the pressure sets in; not with `penetration_tolerance_m`"),
        points_option()},
-      "frictionless contact with rigid bodies. A contact holds nothing before it is closed: the body must be supported "
+      "frictionless contact with rigid bodies. A contact holds nothing before it is closed: the body must be "
+      "supported "
       "without it");
 }
 
@@ -197,15 +209,15 @@ OptionSpec output_option() {
       {required_text("name", "becomes the start of its columns"),
        required_choice(
            "kind",
-           {"reaction", "stress_resultant", "contact", "volume", "fibre_stretch", "fibre_stress", "active_stress",
-            "von_mises", "pressure", "jacobian", "section", "displacement"},
+           {"reaction", "stress_resultant", "contact", "volume", "fibre_stretch", "fibre_stress",
+            "active_stress", "von_mises", "pressure", "jacobian", "section", "displacement"},
            "reaction: force and moment that a surface's nodes exert on the surroundings; stress_resultant: "
-           "the same from stresses; contact: what a rigid body exerts on the surface in contact with it; volume: of "
+           "the same from stresses; contact: what a rigid body exerts on the surface in contact with it; "
+           "volume: of "
            "regions; fibre_stretch to jacobian: "
            "volume-weighted mean, smallest and largest value; section: area and radii (and thickness) of a "
            "cross-section that moves with the material; displacement: of a material point"),
-       optional_text("surface", "reaction, stress_resultant"),
-       optional_text("contact", "contact: its name"),
+       optional_text("surface", "reaction, stress_resultant"), optional_text("contact", "contact: its name"),
        vector_option("point_m", "m",
                      "moment about this point; section: a point of the plane; displacement: the point; all "
                      "in the undeformed body"),

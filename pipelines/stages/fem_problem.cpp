@@ -28,9 +28,9 @@ class Builder {
     if (!body) throw InputError(std::move(mistakes_).list());  // nothing can be said of regions and surfaces
     const bool sound = mesh_quality(), cells = mesh_type();
     problem.materials = fem_materials(options_, *problem.mesh, mistakes_, out_.materials);
-    const bool tissue = sound && cells &&
-                        fem_tissue(options_, *problem.mesh, problem.formulation, mistakes_, problem.tissue,
-                                   out_.directions);
+    const bool tissue =
+        sound && cells &&
+        fem_tissue(options_, *problem.mesh, problem.formulation, mistakes_, problem.tissue, out_.directions);
     problem.programme = fem_programme(options_, *problem.mesh, problem.materials, mistakes_);
     check_outputs(options_, *problem.mesh, mistakes_);
     check(tissue);
@@ -73,7 +73,8 @@ class Builder {
     const fem::Problem& problem = out_.problem;
     fem::Problem named = problem;  // conditions that name a surface
     std::erase_if(named.conditions, [](const fem::BoundaryCondition& c) {
-      return c.surface.empty() && !std::holds_alternative<fem::BodyForce>(c.kind) && !fem::moves_bodies_only(c);
+      return c.surface.empty() && !std::holds_alternative<fem::BodyForce>(c.kind) &&
+             !fem::moves_bodies_only(c);
     });
     const bool whole = tissue && problem.materials.size() == problem.mesh->regions.size() &&
                        named.conditions.size() == problem.conditions.size();
@@ -93,10 +94,12 @@ class Builder {
                    cell_size = std::cbrt(discretisation.volume() / discretisation.cell_count());
       fem::Problem one = problem;
       for (fem::Contact& contact : problem.contacts) {
-        const Options& entry = options_.tables("contact")[static_cast<std::size_t>(&contact - problem.contacts.data())];
+        const Options& entry =
+            options_.tables("contact")[static_cast<std::size_t>(&contact - problem.contacts.data())];
         mistakes_.guarded(entry, fmt::format("contact `{}`: ", contact.name), [&] {
           one.contacts = {contact};
-          contact.penalty_pa_per_m = fem::Contacts(one, discretisation, stiffness, cell_size).penalty_pa_per_m(0);
+          contact.penalty_pa_per_m =
+              fem::Contacts(one, discretisation, stiffness, cell_size).penalty_pa_per_m(0);
         });
       }
     }

@@ -23,20 +23,20 @@ struct FemProblem {
   std::vector<data::Diagnostic> notes;
 };
 
-/// Builds and checks the problem (fem::check). Throws InputError with every mistake found, each with its place: what one
-/// part depends on and cannot be built is left out, the rest is still looked at.
+/// Builds and checks the problem (fem::check). Throws InputError with every mistake found, each with its
+/// place: what one part depends on and cannot be built is left out, the rest is still looked at.
 FemProblem build_fem_problem(const Options& options);
 
 // ---------------------------------------------------------------- its parts
 
 /// Materials as the options give them, one a region of the mesh; those that cannot be read are left out.
 /// `notes`: one row a region.
-std::vector<fem::RegionMaterial> fem_materials(const Options& options, const data::Mesh& mesh, Mistakes& mistakes,
-                                               data::Table& notes);
+std::vector<fem::RegionMaterial> fem_materials(const Options& options, const data::Mesh& mesh,
+                                               Mistakes& mistakes, data::Table& notes);
 
 /// Fibres and blending; `directions`: statistics. Whether they could be built.
-bool fem_tissue(const Options& options, const data::Mesh& mesh, fem::Formulation formulation, Mistakes& mistakes,
-                fem::TissueField& field, data::Table& directions);
+bool fem_tissue(const Options& options, const data::Mesh& mesh, fem::Formulation formulation,
+                Mistakes& mistakes, fem::TissueField& field, data::Table& directions);
 
 /// Boundary conditions as the options give them; their surfaces are left to fem::check.
 std::vector<fem::BoundaryCondition> fem_conditions(const Options& options, Mistakes& mistakes);
@@ -45,8 +45,10 @@ std::vector<fem::BoundaryCondition> fem_conditions(const Options& options, Mista
 std::vector<fem::Phase> fem_programme(const Options& options, const data::Mesh& mesh,
                                       const std::vector<fem::RegionMaterial>& materials, Mistakes& mistakes);
 
-/// Contacts with rigid bodies; triangle meshes are read from their files, and how well they are represented is noted.
-std::vector<fem::Contact> fem_contacts(const Options& options, Mistakes& mistakes, std::vector<data::Diagnostic>& notes);
+/// Contacts with rigid bodies; triangle meshes are read from their files, and how well they are represented
+/// is noted.
+std::vector<fem::Contact> fem_contacts(const Options& options, Mistakes& mistakes,
+                                       std::vector<data::Diagnostic>& notes);
 
 /// Regions that an entry's `regions` names; all where it names none. Throws InputError("missing-region").
 std::vector<std::string> regions_of(const Options& entry, const data::Mesh& mesh, const std::string& what);

@@ -154,7 +154,8 @@ void FemQuantities::contact(const Options& entry, const fem::AcceptedState& acce
     amplitude[static_cast<Eigen::Index>(i)] = accepted.state.amplitude.at(problem_.conditions[i].name);
   const fem::Configuration& at = accepted.state.configuration;
   const fem::ContactSums sums = contacts_.sums(amplitude, at.dofs, at.contact_multiplier)[which];
-  row.wrench(name, fem::moved({sums.force_n, sums.moment_n_m}, Eigen::Vector3d::Zero(), vector_of(entry, "point_m")));
+  row.wrench(name, fem::moved({sums.force_n, sums.moment_n_m}, Eigen::Vector3d::Zero(),
+                              vector_of(entry, "point_m")));
   row.number(name + "_area_m2", "m2", sums.area_m2);
   row.number(name + "_max_Pa", "Pa", sums.greatest_pressure_pa);
   row.number(name + "_penetration_m", "m", sums.greatest_penetration_m);
@@ -190,17 +191,16 @@ data::Table FemQuantities::row(int state, const fem::AcceptedState& accepted,
     } else if (kind == "contact") {
       contact(entry, accepted, row);
     } else if (kind == "section") {
-      const fem::SectionFigures s = fem::section(
-          discretisation_, configuration, vector_of(entry, "point_m"), vector_of(entry, "normal"));
+      const fem::SectionFigures s = fem::section(discretisation_, configuration, vector_of(entry, "point_m"),
+                                                 vector_of(entry, "normal"));
       row.number(name + "_area_m2", "m2", s.area_m2);
       row.number(name + "_mean_radius_m", "m", s.mean_radius_m);
       row.number(name + "_least_radius_m", "m", s.least_radius_m);
       row.number(name + "_greatest_radius_m", "m", s.greatest_radius_m);
       if (entry.has("direction")) {
-        row.number(
-            name + "_thickness_m", "m",
-            fem::section_thickness(discretisation_, configuration, vector_of(entry, "point_m"),
-                                   vector_of(entry, "normal"), vector_of(entry, "direction")));
+        row.number(name + "_thickness_m", "m",
+                   fem::section_thickness(discretisation_, configuration, vector_of(entry, "point_m"),
+                                          vector_of(entry, "normal"), vector_of(entry, "direction")));
       }
     } else if (kind == "displacement") {
       const Eigen::Vector3d u =

@@ -19,7 +19,8 @@ std::optional<fem::Pennation> pennation(const Options& entry, const std::string&
                         vector_of(entry, "pennation_axis")};
 }
 
-fem::FibreRule fibre_rule(const Options& entry, const data::Mesh& mesh, const std::string& owner, Mistakes& mistakes) {
+fem::FibreRule fibre_rule(const Options& entry, const data::Mesh& mesh, const std::string& owner,
+                          Mistakes& mistakes) {
   const std::string kind = entry.text("kind");
   fem::FibreRule rule;
   if (entry.has("regions")) rule.regions = regions_of(entry, mesh, owner);
@@ -41,8 +42,9 @@ fem::FibreRule fibre_rule(const Options& entry, const data::Mesh& mesh, const st
     keys.insert(keys.end(), {"origin", "insertion", "pennation_deg", "pennation_axis"});
     mistakes.need(entry, "origin", owner);
     mistakes.need(entry, "insertion", owner);
-    rule.source = fem::HarmonicFibres{entry.maybe_text("origin").value_or(""), entry.maybe_text("insertion").value_or(""),
-                                      pennation(entry, owner, mistakes)};
+    rule.source =
+        fem::HarmonicFibres{entry.maybe_text("origin").value_or(""),
+                            entry.maybe_text("insertion").value_or(""), pennation(entry, owner, mistakes)};
   }
   mistakes.only_keys(entry, keys, owner);
   return rule;
@@ -82,8 +84,8 @@ std::vector<Part> parts_of(const Options& options, const data::Mesh& mesh, Mista
     const std::string owner = fmt::format("entry {} of `blend`", ++k);
     mistakes.guarded(entry, "", [&] {
       Part part{&entry, owner, {}};
-      (entry.text("of") == "muscle" ? part.rule.muscle : part.rule.soft_tissue) = {
-          fraction_rule(entry, mesh, owner, mistakes)};
+      (entry.text("of") == "muscle" ? part.rule.muscle
+                                    : part.rule.soft_tissue) = {fraction_rule(entry, mesh, owner, mistakes)};
       parts.push_back(std::move(part));
     });
   }
@@ -92,8 +94,8 @@ std::vector<Part> parts_of(const Options& options, const data::Mesh& mesh, Mista
 
 }  // namespace
 
-bool fem_tissue(const Options& options, const data::Mesh& mesh, fem::Formulation formulation, Mistakes& mistakes,
-                fem::TissueField& field, data::Table& directions) {
+bool fem_tissue(const Options& options, const data::Mesh& mesh, fem::Formulation formulation,
+                Mistakes& mistakes, fem::TissueField& field, data::Table& directions) {
   const std::size_t before = mistakes.size();
   const std::vector<Part> parts = parts_of(options, mesh, mistakes);
   if (mistakes.size() != before) return false;
@@ -101,7 +103,8 @@ bool fem_tissue(const Options& options, const data::Mesh& mesh, fem::Formulation
   for (const Part& part : parts) {
     rules.fibres.insert(rules.fibres.end(), part.rule.fibres.begin(), part.rule.fibres.end());
     rules.muscle.insert(rules.muscle.end(), part.rule.muscle.begin(), part.rule.muscle.end());
-    rules.soft_tissue.insert(rules.soft_tissue.end(), part.rule.soft_tissue.begin(), part.rule.soft_tissue.end());
+    rules.soft_tissue.insert(rules.soft_tissue.end(), part.rule.soft_tissue.begin(),
+                             part.rule.soft_tissue.end());
   }
   try {
     fem::Tissue built = fem::build_tissue(mesh, formulation, rules);
@@ -111,7 +114,8 @@ bool fem_tissue(const Options& options, const data::Mesh& mesh, fem::Formulation
   } catch (const data::InputError& e) {
     // Which rules are wrong by themselves? Where none is, they contradict each other.
     for (const Part& part : parts)
-      mistakes.guarded(*part.entry, part.owner + ": ", [&] { fem::build_tissue(mesh, formulation, part.rule); });
+      mistakes.guarded(*part.entry, part.owner + ": ",
+                       [&] { fem::build_tissue(mesh, formulation, part.rule); });
     if (mistakes.size() == before) mistakes.take(e, *parts.back().entry);
     return false;
   }

@@ -34,11 +34,16 @@ output = [
 )";
 }
 
-double stretch(const StageData& data) { return 1.0 + last(data, "corner_x_m") / 0.02; }
-double nominal(double l) { return mu * (l - 1.0 / (l * l)); }
+double stretch(const StageData& data) {
+  return 1.0 + last(data, "corner_x_m") / 0.02;
+}
+double nominal(double l) {
+  return mu * (l - 1.0 / (l * l));
+}
 
 TEST(FemConditions, ADeadTractionIsTheNominalStress) {
-  const StageData data = solved(loaded_block("surface = \"x1\", kind = \"traction\", traction_pa = [1e4, 0, 0]"));
+  const StageData data =
+      solved(loaded_block("surface = \"x1\", kind = \"traction\", traction_pa = [1e4, 0, 0]"));
   const double l = stretch(data);
   EXPECT_NEAR(nominal(l), 1e4, 1e-3);
   // The left end pulls its surroundings towards the body, at the middle of its deformed section.
@@ -69,11 +74,14 @@ TEST(FemConditions, AWeightIsCarriedByWhatHoldsTheBody) {
 }
 
 TEST(FemConditions, ARigidMotionOfBothEndsTurnsTheBodyWithoutStress) {
-  std::string options = loaded_block("surface = \"x1\", kind = \"rigid_motion\", angle_deg = 90, axis = [0, 0, 1], centre_m = [0.01, 0, 0], translation_m = [0, 0, 0.003]");
-  options = with(options, R"({ name = "left", surface = "x0", kind = "symmetry" },
+  std::string options = loaded_block(
+      "surface = \"x1\", kind = \"rigid_motion\", angle_deg = 90, axis = [0, 0, 1], centre_m = [0.01, 0, 0], "
+      "translation_m = [0, 0, 0.003]");
+  options = with(
+      options, R"({ name = "left", surface = "x0", kind = "symmetry" },
   { name = "front", surface = "y0", kind = "symmetry" },
   { name = "floor", surface = "z0", kind = "symmetry" },)",
-                 R"({ name = "left", surface = "x0", kind = "rigid_motion", angle_deg = 90, axis = [0, 0, 1], centre_m = [0.01, 0, 0], translation_m = [0, 0, 0.003] },)");
+      R"({ name = "left", surface = "x0", kind = "rigid_motion", angle_deg = 90, axis = [0, 0, 1], centre_m = [0.01, 0, 0], translation_m = [0, 0, 0.003] },)");
   options = with(options, "{ load = 1.0 }", "{ load = 1.0, left = 1.0 }");
   options = with(options, "steps = 2", "steps = 8");
   const StageData data = solved(options);
@@ -87,8 +95,9 @@ TEST(FemConditions, ARigidMotionOfBothEndsTurnsTheBodyWithoutStress) {
 }
 
 TEST(FemConditions, ATwistedCylinderNeedsRivlinsTorqueAndThrust) {
-  // Pure torsion by k per length of an incompressible neo-Hookean cylinder is an equilibrium with a free side: torque
-  // pi mu k a^4 / 2, thrust pi mu k^2 a^4 / 4, energy a^4 L pi mu k^2 / 4 (Rivlin 1949, doi:10.1098/rsta.1949.0009).
+  // Pure torsion by k per length of an incompressible neo-Hookean cylinder is an equilibrium with a free
+  // side: torque pi mu k a^4 / 2, thrust pi mu k^2 a^4 / 4, energy a^4 L pi mu k^2 / 4 (Rivlin 1949,
+  // doi:10.1098/rsta.1949.0009).
   const StageData data = solved(R"(
 element = "q2_q1_taylor_hood"
 mesh = { cylinder = { radius_m = 0.01, length_m = 0.01, cells = 2, core_cells = 2, ring_cells = 1, region = "rod" } }
@@ -150,8 +159,10 @@ output = [
   EXPECT_LT(last(data, "fibres_min"), last(data, "fibres_max"));
   EXPECT_GT(last(data, "active_mean_Pa"), 0.0);
   EXPECT_NEAR(last(data, "belly_m3"), 0.03 * 0.01 * 0.01, 1e-3 * 3e-6);
-  const std::string lines = with(options, "kind = \"mesh_field\", field = \"fibre\"", "kind = \"mesh_lines\", axis = \"second\"");
-  EXPECT_NEAR(last(solved(lines), "origin_N"), force, 1e-6 * force) << "the cells' second lines are those of the field";
+  const std::string lines =
+      with(options, "kind = \"mesh_field\", field = \"fibre\"", "kind = \"mesh_lines\", axis = \"second\"");
+  EXPECT_NEAR(last(solved(lines), "origin_N"), force, 1e-6 * force)
+      << "the cells' second lines are those of the field";
   EXPECT_EQ(data.tables.at("materials").rows(), 5u) << "muscle, two sheets, two tendons";
 }
 

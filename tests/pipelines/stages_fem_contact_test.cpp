@@ -1,4 +1,5 @@
-// Contact with rigid bodies through fem.solve: a uniform state against closed form, Hertz' relation, bad input.
+// Contact with rigid bodies through fem.solve: a uniform state against closed form, Hertz' relation, bad
+// input.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -48,7 +49,8 @@ const double force = 1e4 * 1e-4 * (1.0 / 0.64 - 0.8);
 TEST(FemContact, AFloorThatComesUpPressesTheCubeUniformly) {
   const StageData data = solved(pressed_cube(plane + ", penetration_tolerance_m = 1e-10"));
   EXPECT_NEAR(last(data, "floor_z_N"), force, 1e-6 * force) << "on the muscle's surface";
-  EXPECT_NEAR(last(data, "floor_max_Pa"), force / 1e-4, 1e-5 * force / 1e-4) << "pressures are per undeformed area";
+  EXPECT_NEAR(last(data, "floor_max_Pa"), force / 1e-4, 1e-5 * force / 1e-4)
+      << "pressures are per undeformed area";
   EXPECT_NEAR(last(data, "floor_area_m2"), 1e-4, 1e-12);
   EXPECT_LT(last(data, "floor_penetration_m"), 1e-10);
   EXPECT_NEAR(last(data, "lid_z_N"), force, 1e-6 * force) << "passed on to what holds the lid";
@@ -83,21 +85,25 @@ std::string slab_stl(const std::filesystem::path& folder) {
 }
 
 TEST(FemContact, AClosedTriangleMeshIsABody) {
-  // Upside down in its file: turned about x, its lower face becomes the floor's upper one and comes to lie at -1 mm.
+  // Upside down in its file: turned about x, its lower face becomes the floor's upper one and comes to lie at
+  // -1 mm.
   const std::string file = slab_stl(brachium::tests::scratch_dir());
-  const std::string body = "shape = \"triangles\", file = \"" + file + "\", length_unit = \"mm\", grid_spacing_m = 0.001, grid_margin_m = 0.0, "
+  const std::string body = "shape = \"triangles\", file = \"" + file +
+                           "\", length_unit = \"mm\", grid_spacing_m = 0.001, grid_margin_m = 0.0, "
                            "turn_deg = 180, turn_axis = [1, 0, 0], place_m = [0, 0, -0.021]";
   const StageData data = solved(pressed_cube(body + ", penetration_tolerance_m = 1e-9"));
   EXPECT_NEAR(last(data, "floor_z_N"), force, 1e-4 * force);
   ASSERT_FALSE(data.diagnostics.empty());
   EXPECT_THAT(data.diagnostics[0].message, HasSubstr("12 triangles stand as a distance field"));
   EXPECT_THAT(mistakes(pressed_cube("shape = \"triangles\", file = \"" + file + "\"")),
-              AllOf(HasSubstr("contact `floor` (shape triangles) needs `length_unit`"), HasSubstr("needs `grid_spacing_m`")));
+              AllOf(HasSubstr("contact `floor` (shape triangles) needs `length_unit`"),
+                    HasSubstr("needs `grid_spacing_m`")));
 }
 
 TEST(FemContact, ASphereIsPressedInAsHertzDid) {
-  // Force, peak pressure and radius of the contact hang together by what lies near it, wherever the far faces are:
-  // p0^3 = 6 F E^2 / (pi^3 R^2), E = 4 mu where incompressible (Johnson 1985, doi:10.1017/CBO9781139171731, eq. 4.24).
+  // Force, peak pressure and radius of the contact hang together by what lies near it, wherever the far faces
+  // are: p0^3 = 6 F E^2 / (pi^3 R^2), E = 4 mu where incompressible (Johnson 1985,
+  // doi:10.1017/CBO9781139171731, eq. 4.24).
   const StageData data = solved(R"(
 mesh = { block = { size_m = [0.015, 0.015, 0.015], cells = [5, 5, 5], grading = [9, 9, 0.111], corner_m = [0, 0, -0.015] } }
 material = [{ law = "neo_hooke", shear_modulus_pa = 1e4, bulk_modulus_pa = 1e7 }]
@@ -114,7 +120,8 @@ output = [{ name = "ball", kind = "contact", contact = "ball" }]
   const double whole = -4.0 * last(data, "ball_z_N"), modulus = 4e4, pi = std::numbers::pi;
   const double peak = std::cbrt(6.0 * whole * modulus * modulus / (std::pow(pi, 3) * 0.05 * 0.05));
   EXPECT_NEAR(last(data, "ball_max_Pa"), peak, 0.05 * peak);
-  EXPECT_NEAR(4.0 * last(data, "ball_area_m2"), 1.5 * whole / peak, 0.15 * 1.5 * whole / peak) << "pi a^2 = 3 F / (2 p0)";
+  EXPECT_NEAR(4.0 * last(data, "ball_area_m2"), 1.5 * whole / peak, 0.15 * 1.5 * whole / peak)
+      << "pi a^2 = 3 F / (2 p0)";
   EXPECT_LE(last(data, "ball_penetration_m"), 1e-6);
 }
 
@@ -122,9 +129,11 @@ TEST(FemContact, MistakesAreNamed) {
   EXPECT_THAT(mistakes(pressed_cube("shape = \"sphere\", centre_m = [0, 0, -0.1], normal = [0, 0, 1]")),
               AllOf(HasSubstr("contact `floor` (shape sphere) needs `radius_m`"),
                     HasSubstr("contact `floor` (shape sphere) has no use for `normal`")));
-  EXPECT_THAT(mistakes(with(pressed_cube(plane), "moves_with = \"lift\"", "moves_with = \"lfit\"")),
-              AllOf(HasSubstr("moves with `lfit`, which is no rigid motion"), HasSubstr("did you mean `lift`?")));
-  EXPECT_THAT(mistakes(with(pressed_cube(plane), "surface = \"z0\"", "surface = \"z2\"")), HasSubstr("no surface `z2`"));
+  EXPECT_THAT(
+      mistakes(with(pressed_cube(plane), "moves_with = \"lift\"", "moves_with = \"lfit\"")),
+      AllOf(HasSubstr("moves with `lfit`, which is no rigid motion"), HasSubstr("did you mean `lift`?")));
+  EXPECT_THAT(mistakes(with(pressed_cube(plane), "surface = \"z0\"", "surface = \"z2\"")),
+              HasSubstr("no surface `z2`"));
   EXPECT_THAT(mistakes(with(pressed_cube(plane), "normal = [0, 0, 1]", "normal = [0, 0, 0]")),
               HasSubstr("the normal of body `floor` has no direction"));
   EXPECT_THAT(mistakes(with(pressed_cube(plane), "contact = \"floor\"", "contact = \"flor\"")),

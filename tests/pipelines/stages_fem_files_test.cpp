@@ -19,9 +19,11 @@ std::string sample(const std::string& name) {
   return (brachium::tests::source_dir() / "tests/data/io/meshes" / name).string();
 }
 
-/// The samples' body [0, 20] x [0, 10] x [0, 10] mm, two regions along x, pulled at its ends, which may not contract.
+/// The samples' body [0, 20] x [0, 10] x [0, 10] mm, two regions along x, pulled at its ends, which may not
+/// contract.
 std::string pulled(const std::string& file, const std::string& element, const std::string& more = "") {
-  return "element = \"" + element + "\"\nmesh = { file = \"" + file + "\", length_unit = \"mm\"" + more + " }\n" + R"(
+  return "element = \"" + element + "\"\nmesh = { file = \"" + file + "\", length_unit = \"mm\"" + more +
+         " }\n" + R"(
 material = [
   { regions = ["muscle"], law = "neo_hooke", shear_modulus_pa = 2e4, bulk_modulus_pa = 2e6 },
   { regions = ["tendon"], law = "neo_hooke", shear_modulus_pa = 2e5, bulk_modulus_pa = 2e7 },
@@ -46,8 +48,10 @@ TEST(FemFiles, TheSameHexahedraFromEveryFormatGiveTheSameForce) {
   const double force = last(gmsh, "end_N"), place = last(gmsh, "interface_x_m");
   EXPECT_LT(place, 0.0005) << "the tendon, ten times as stiff, hardly gives";
   EXPECT_NEAR(last(gmsh, "soft_m3"), 1e-6, 2e-8);
-  for (const auto& [file, more] : {std::pair{"hex27_22.msh", std::string()}, {"hex27_raw_zlib.vtu", vtk_names},
-                                   {"hex27_51.vtk", vtk_names}, {"hex27_40.feb", std::string()}}) {
+  for (const auto& [file, more] : {std::pair{"hex27_22.msh", std::string()},
+                                   {"hex27_raw_zlib.vtu", vtk_names},
+                                   {"hex27_51.vtk", vtk_names},
+                                   {"hex27_40.feb", std::string()}}) {
     const StageData data = solved(pulled(sample(file), "q2_p1_discontinuous", more));
     EXPECT_NEAR(last(data, "end_N"), force, 1e-9 * force) << file;
     EXPECT_NEAR(last(data, "interface_x_m"), place, 1e-12) << file;
@@ -57,11 +61,14 @@ TEST(FemFiles, TheSameHexahedraFromEveryFormatGiveTheSameForce) {
 
 TEST(FemFiles, LinearCellsAreElevatedWhereAskedFor) {
   const double force = last(solved(pulled(sample("hex27_41.msh"), "q2_p1_discontinuous")), "end_N");
-  const StageData hexahedra = solved(pulled(sample("hex8_25.feb"), "q2_p1_discontinuous", ", elevate = true"));
+  const StageData hexahedra =
+      solved(pulled(sample("hex8_25.feb"), "q2_p1_discontinuous", ", elevate = true"));
   EXPECT_NEAR(last(hexahedra, "end_N"), force, 1e-9 * force) << "its faces are plane";
   EXPECT_THAT(hexahedra.attributes.at("mesh"), HasSubstr("hex8 elevated to hex27"));
-  const double tetrahedra = last(solved(pulled(sample("tet4_22.msh"), "p2_p1_taylor_hood", ", elevate = true")), "end_N");
-  EXPECT_NEAR(tetrahedra, last(solved(pulled(sample("tet10_41.msh"), "p2_p1_taylor_hood")), "end_N"), 1e-9 * force);
+  const double tetrahedra =
+      last(solved(pulled(sample("tet4_22.msh"), "p2_p1_taylor_hood", ", elevate = true")), "end_N");
+  EXPECT_NEAR(tetrahedra, last(solved(pulled(sample("tet10_41.msh"), "p2_p1_taylor_hood")), "end_N"),
+              1e-9 * force);
   EXPECT_NEAR(tetrahedra, force, 0.1 * force);
   EXPECT_THAT(mistakes(pulled(sample("hex8_25.feb"), "q2_p1_discontinuous")),
               AllOf(HasSubstr("error[cell-type-mismatch]"), HasSubstr("elevate = true")));
@@ -72,16 +79,20 @@ std::string fibrous(const std::string& file, const std::string& field, const std
   std::string options = pulled(file, "q2_p1_discontinuous", more);
   options = with(options, "law = \"neo_hooke\", shear_modulus_pa = 2e4, bulk_modulus_pa = 2e6",
                  "set = \"sprenger\", muscle_c3_pa = 1e3, bulk_modulus_pa = 2e6");
-  return with(options, "boundary", "fibre = [{ regions = [\"muscle\"], kind = \"mesh_field\", field = \"" + field + "\" }]\nboundary");
+  return with(
+      options, "boundary",
+      "fibre = [{ regions = [\"muscle\"], kind = \"mesh_field\", field = \"" + field + "\" }]\nboundary");
 }
 
 TEST(FemFiles, FibresThatAFileBringsAlongAreThoseOfTheSolve) {
   const std::string file = sample("hex27_raw.vtu");
   const StageData brought = solved(fibrous(file, "fibre", vtk_names));  // (1, 0, 0) by cell
-  const StageData stated = solved(with(fibrous(file, "fibre", vtk_names), "kind = \"mesh_field\", field = \"fibre\"",
-                                       "kind = \"constant\", direction = [1, 0, 0]"));
+  const StageData stated =
+      solved(with(fibrous(file, "fibre", vtk_names), "kind = \"mesh_field\", field = \"fibre\"",
+                  "kind = \"constant\", direction = [1, 0, 0]"));
   EXPECT_DOUBLE_EQ(last(brought, "end_N"), last(stated, "end_N"));
-  EXPECT_THAT(mistakes(fibrous(file, "fibres", vtk_names)), AllOf(HasSubstr("`fibres`"), HasSubstr("did you mean `fibre`?")));
+  EXPECT_THAT(mistakes(fibrous(file, "fibres", vtk_names)),
+              AllOf(HasSubstr("`fibres`"), HasSubstr("did you mean `fibre`?")));
 }
 
 TEST(FemFiles, FibresOfAFebioFileAreReadFromItsMeshData) {
@@ -89,12 +100,14 @@ TEST(FemFiles, FibresOfAFebioFileAreReadFromItsMeshData) {
   text << std::ifstream(sample("hex27_40.feb")).rdbuf();
   std::string content = text.str();
   content.insert(content.find("</febio_spec>"),
-                 "<MeshData><ElementData type=\"mat_axis\" elem_set=\"muscle\"><e lid=\"1\"><a>1,0,0</a><d>0,1,0</d></e></ElementData></MeshData>\n");
+                 "<MeshData><ElementData type=\"mat_axis\" elem_set=\"muscle\"><e "
+                 "lid=\"1\"><a>1,0,0</a><d>0,1,0</d></e></ElementData></MeshData>\n");
   const std::filesystem::path file = brachium::tests::scratch_dir() / "fibres.feb";
   std::ofstream(file) << content;
   const StageData read = solved(fibrous(file.string(), "mat_axis_a"));
-  const StageData stated = solved(with(fibrous(file.string(), "mat_axis_a"), "kind = \"mesh_field\", field = \"mat_axis_a\"",
-                                       "kind = \"constant\", direction = [1, 0, 0]"));
+  const StageData stated =
+      solved(with(fibrous(file.string(), "mat_axis_a"), "kind = \"mesh_field\", field = \"mat_axis_a\"",
+                  "kind = \"constant\", direction = [1, 0, 0]"));
   EXPECT_DOUBLE_EQ(last(read, "end_N"), last(stated, "end_N"));
 }
 

@@ -289,32 +289,44 @@ std::string with_data(const std::string& file, const std::string& data) {
 
 TEST_F(MeshErrors, FibresAndAxesOfFebioFilesGoByTheirSet) {
   // Entries of MeshData are numbered within their set: an ElementSet, or a block of Elements.
-  const std::string three = "<MeshData><ElementData var=\"fiber\" elem_set=\"distal\"><elem lid=\"1\">0,0.6,0.8</elem></ElementData></MeshData>";
-  MeshFile file = read_mesh(tests::write_file(dir / "a.feb", with_data("hex20_30.feb", three)), millimetres());
+  const std::string three =
+      "<MeshData><ElementData var=\"fiber\" elem_set=\"distal\"><elem "
+      "lid=\"1\">0,0.6,0.8</elem></ElementData></MeshData>";
+  MeshFile file =
+      read_mesh(tests::write_file(dir / "a.feb", with_data("hex20_30.feb", three)), millimetres());
   EXPECT_EQ(file.mesh.cell_fields.at("fiber"), (Eigen::MatrixXd(3, 2) << 0, 0, 0, 0.6, 0, 0.8).finished());
   ASSERT_EQ(file.notes.size(), 1u);
   EXPECT_EQ(file.notes[0].message, "field `fiber` has no value at 1 cells; 0 is used there");
   const std::string four =
-      "<MeshData><ElementData type=\"mat_axis\" elem_set=\"tendon\"><e lid=\"1\"><a>0,0,1</a><d>1,0,0</d></e></ElementData>"
-      "<ElementData type=\"mat_axis\" elem_set=\"muscle\"><e lid=\"1\"><a>0,1,0</a><d>1,0,0</d></e></ElementData>"
-      "<NodeData name=\"gamma\" data_type=\"scalar\" node_set=\"held\"><node lid=\"2\">0.5</node></NodeData></MeshData>";
+      "<MeshData><ElementData type=\"mat_axis\" elem_set=\"tendon\"><e "
+      "lid=\"1\"><a>0,0,1</a><d>1,0,0</d></e></ElementData>"
+      "<ElementData type=\"mat_axis\" elem_set=\"muscle\"><e "
+      "lid=\"1\"><a>0,1,0</a><d>1,0,0</d></e></ElementData>"
+      "<NodeData name=\"gamma\" data_type=\"scalar\" node_set=\"held\"><node "
+      "lid=\"2\">0.5</node></NodeData></MeshData>";
   file = read_mesh(tests::write_file(dir / "b.feb", with_data("hex27_40.feb", four)), millimetres());
   EXPECT_EQ(file.mesh.cell_fields.at("mat_axis_a"), (Eigen::MatrixXd(3, 2) << 0, 0, 0, 1, 1, 0).finished());
   EXPECT_EQ(file.mesh.cell_fields.at("mat_axis_d"), (Eigen::MatrixXd(3, 2) << 1, 1, 0, 0, 0, 0).finished());
   Eigen::Index row = 0, at = 0;
   ASSERT_EQ(file.mesh.point_fields.at("gamma").maxCoeff(&row, &at), 0.5);
-  EXPECT_EQ(file.mesh.points.col(at), Eigen::Vector3d(0.0, 0.0, 0.01)) << "the second of the set, as the file lists it";
+  EXPECT_EQ(file.mesh.points.col(at), Eigen::Vector3d(0.0, 0.0, 0.01))
+      << "the second of the set, as the file lists it";
 }
 
 TEST_F(MeshErrors, DataOfFebioFilesThatCannotBeReadAreNamed) {
-  const auto said = [&](const std::string& data) { return error("a.feb", with_data("hex20_30.feb", "<MeshData>" + data + "</MeshData>")); };
-  EXPECT_NE(said("<ElementData var=\"fiber\" elem_set=\"distl\"/>").find("did you mean `distal`?"), std::string::npos);
+  const auto said = [&](const std::string& data) {
+    return error("a.feb", with_data("hex20_30.feb", "<MeshData>" + data + "</MeshData>"));
+  };
+  EXPECT_NE(said("<ElementData var=\"fiber\" elem_set=\"distl\"/>").find("did you mean `distal`?"),
+            std::string::npos);
   expect_start(said("<ElementData var=\"fiber\" elem_set=\"distal\"><e lid=\"2\">1,0,0</e></ElementData>"),
                "error[mesh-index]: entry 2 of a set of 1 members\n  --> a.feb:");
   expect_start(said("<ElementData var=\"fiber\" elem_set=\"distal\" generator=\"math\"/>"),
                "error[mesh-unsupported]: <ElementData> is left to FEBio to compute");
-  const std::string material = "<Material><material id=\"1\"><fiber type=\"vector\">1,0,0</fiber></material></Material>";
-  const MeshFile file = read_mesh(tests::write_file(dir / "c.feb", with_data("hex20_30.feb", material)), millimetres());
+  const std::string material =
+      "<Material><material id=\"1\"><fiber type=\"vector\">1,0,0</fiber></material></Material>";
+  const MeshFile file =
+      read_mesh(tests::write_file(dir / "c.feb", with_data("hex20_30.feb", material)), millimetres());
   ASSERT_EQ(file.notes.size(), 1u);
   EXPECT_EQ(file.notes[0].message, "<fiber> within a material was left out: only MeshData are read");
 }

@@ -48,7 +48,8 @@ std::string binary_stl() {
 }
 
 const std::string obj =
-    "# a comment\no bone\nv 0 0 0\nv 2 0 0\nvn 0 0 1\nv 0 2 0 1.0\nv 0 0 2\ns off\nf 1 3 2\nf 1//1 2//1 4//1\nf -4 -1 -2\nf 2/1/1 3/1/1 4/1/1\n";
+    "# a comment\no bone\nv 0 0 0\nv 2 0 0\nvn 0 0 1\nv 0 2 0 1.0\nv 0 0 2\ns off\nf 1 3 2\nf 1//1 2//1 "
+    "4//1\nf -4 -1 -2\nf 2/1/1 3/1/1 4/1/1\n";
 
 double volume(const TriangleFile& t) {
   double sum = 0.0;
@@ -72,7 +73,8 @@ class TriangleFiles : public ::testing::Test {
 };
 
 TEST_F(TriangleFiles, EveryFormatGivesOneClosedBody) {
-  for (const auto& [name, text] : {std::pair{"a.stl", ascii_stl()}, {"b.stl", binary_stl()}, {"c.obj", obj}}) {
+  for (const auto& [name, text] :
+       {std::pair{"a.stl", ascii_stl()}, {"b.stl", binary_stl()}, {"c.obj", obj}}) {
     const TriangleFile t = read(name, text);
     EXPECT_EQ(t.points.cols(), 4) << name;
     EXPECT_EQ(t.triangles.cols(), 4) << name;
@@ -88,14 +90,18 @@ TEST_F(TriangleFiles, FacesOfMoreCornersAreCutIntoAFan) {
 TEST_F(TriangleFiles, BrokenFilesAreRefusedWithTheirPlace) {
   EXPECT_EQ(error("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n").substr(0, 84),
             "error[mesh-index]: a face names point 7, and 3 points came before it\n  --> a.obj:4:1");
-  EXPECT_EQ(error("b.obj", "v 0 0\nv 1 0 0\n").substr(0, 76), "error[mesh-syntax]: a point has fewer than three coordinates\n  --> b.obj:1:1");
+  EXPECT_EQ(error("b.obj", "v 0 0\nv 1 0 0\n").substr(0, 76),
+            "error[mesh-syntax]: a point has fewer than three coordinates\n  --> b.obj:1:1");
   EXPECT_EQ(error("c.obj", "v 0 0 0\n").substr(0, 17), "error[mesh-empty]");
   EXPECT_EQ(error("d.stl", binary_stl().substr(0, 200)).substr(0, 21), "error[mesh-truncated]");
   std::string text = ascii_stl();
   text.replace(text.find("endloop"), 7, "vertex ");
-  EXPECT_NE(error("e.stl", text).find("`vertex` stands where `endloop` should\n  --> e.stl:7:2"), std::string::npos);
+  EXPECT_NE(error("e.stl", text).find("`vertex` stands where `endloop` should\n  --> e.stl:7:2"),
+            std::string::npos);
   EXPECT_EQ(error("f.ply", "ply").substr(0, 23), "error[mesh-unsupported]");
-  EXPECT_NE(tests::error_of([&] { read_triangles(tests::write_file(dir / "g.obj", obj), ""); }).find("mesh-unit-missing"),
+  EXPECT_NE(tests::error_of([&] {
+              read_triangles(tests::write_file(dir / "g.obj", obj), "");
+            }).find("mesh-unit-missing"),
             std::string::npos);
 }
 

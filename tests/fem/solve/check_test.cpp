@@ -42,7 +42,8 @@ TEST(Check, FindsAllMistakesAtOnce) {
   const auto found = codes(check(p));
   EXPECT_THAT(found, AllOf(Contains("missing-surface"), Contains("unknown-condition"),
                            Contains("activation-range"), Contains("missing-fibres")));
-  EXPECT_THAT(found, Not(Contains("empty-phase"))) << "what the first phase is meant to change is only misspelt";
+  EXPECT_THAT(found, Not(Contains("empty-phase")))
+      << "what the first phase is meant to change is only misspelt";
   EXPECT_THROW(solve(p, {}), data::InputError);
 }
 
