@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -54,34 +55,53 @@ data::Mesh stress_free_mesh(const MuscleBody& body) {
   return mesh;
 }
 
-/// Amplitudes of the places that both motions list.
-std::vector<double> knots(const MuscleBody& body, const AngleRange& range) {
-  std::vector<double> a{0.0, 0.25, 0.5, 0.75, 1.0};
-  const double reach = std::max(range.upper_rad - body.reference_rad, body.reference_rad - range.lower_rad);
-  const int n = std::max(1, static_cast<int>(std::ceil(reach / knot_spacing)));
-  for (int i = 1; i <= n; ++i) a.push_back(1.0 + reach * i / n);
+/// The range's first angle has a knot this far before it, in parts of the knots' spacing.
+constexpr double close_by = 1e-3;
+
+/// Amplitudes of the places of the distal end: the way in situ, then the range of angles. One knot close
+/// before and one behind the range keep the motion's slope that of the path at both ends.
+std::vector<double> knots(double reach) {
+  const int n = std::max(2, static_cast<int>(std::ceil(reach / knot_spacing)));
+  std::vector<double> a{0.0, 0.25, 0.5, 0.75, 1.0 - close_by * reach / n};
+  for (int i = 0; i <= n + 1; ++i) a.push_back(1.0 + reach * i / n);
   return a;
 }
 
+/// Column k by the parabola through three columns that follow it towards `step`; they are evenly spaced, and
+/// column k is `way` of their spacing before the first.
+void extrapolate(GuidedMotion& m, Eigen::Index k, Eigen::Index step, double way) {
+  const Eigen::Index a = k + step, b = a + step, c = b + step;
+  const double wa = 0.5 * (way + 1.0) * (way + 2.0), wb = -way * (way + 2.0), wc = 0.5 * way * (way + 1.0);
+  m.place_m.col(k) = wa * m.place_m.col(a) + wb * m.place_m.col(b) + wc * m.place_m.col(c);
+  m.angle_rad[k] = wa * m.angle_rad[a] + wb * m.angle_rad[b] + wc * m.angle_rad[c];
+}
+
 GuidedMotion distal_motion(const MuscleBody& body, const AngleRange& range) {
-  const std::vector<double> a = knots(body, range);
+  const bool upwards = range.upper_rad > body.reference_rad;
+  const std::vector<double> a =
+      knots(upwards ? range.upper_rad - body.reference_rad : body.reference_rad - range.lower_rad);
   const auto n = static_cast<Eigen::Index>(a.size());
-  const double sign = range.upper_rad > body.reference_rad ? 1.0 : -1.0;
   const Axle axle = stress_free_axis(body);
   GuidedMotion motion;
   motion.centre_m = axle.from + body.stress_free_length_m() * axle.along;
   motion.amplitude = Eigen::VectorXd::Map(a.data(), n);
   motion.place_m.resize(3, n);
   motion.angle_rad = Eigen::VectorXd::Zero(n);
-  const EndPlace in_situ = end_place(body, body.reference_rad);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (a[static_cast<std::size_t>(i)] <= 1.0) {
-      motion.place_m.col(i) = motion.centre_m + motion.amplitude[i] * (in_situ.centre_m - motion.centre_m);
-      continue;
-    }
-    const EndPlace place = end_place(body, body.reference_rad + sign * (motion.amplitude[i] - 1.0));
+  constexpr Eigen::Index before = 4;  // the knot before the range
+  const Eigen::Index behind = n - 1;
+  for (Eigen::Index i = before + 1; i < behind; ++i) {
+    const double turn = motion.amplitude[i] - 1.0;
+    const double q = body.reference_rad + (upwards ? turn : -turn);
+    const EndPlace place = end_place(body, std::clamp(q, range.lower_rad, range.upper_rad));
     motion.place_m.col(i) = place.centre_m;
     motion.angle_rad[i] = place.turn_rad;
+  }
+  extrapolate(motion, before, 1, close_by);
+  extrapolate(motion, behind, -1, 1.0);
+  for (Eigen::Index i = 0; i < before; ++i) {
+    const double way = motion.amplitude[i] / motion.amplitude[before];
+    motion.place_m.col(i) = motion.centre_m + way * (motion.place_m.col(before) - motion.centre_m);
+    motion.angle_rad[i] = way * motion.angle_rad[before];
   }
   return motion;
 }

@@ -6,13 +6,13 @@
 /// inextensible tendon (fem/limb/cable_path.hpp) that leads to the forearm: the end's centre stays at the
 /// cable's length from the insertion along the path, its face stays normal to the path.
 ///
-/// | symbol | identifier         | unit | meaning |
-/// |--------|--------------------|------|---------------------------------------------------------------------|
-/// | q      | q_rad              | rad  | elbow flexion | | q_0    | reference_rad      | rad  | the end of
-/// the range at which the muscle is shortest                | | L_0    | stress_free_length | m    | of belly
-/// and meshed tendons                                         | | s      | pre_stretch        | 1    | length
-/// between the ends at q_0 over L_0                             | | L_c    | cable_length       | m    |
-/// L_path(q_0) - s L_0                                                 |
+/// | symbol | identifier         | unit | meaning                                                |
+/// |--------|--------------------|------|--------------------------------------------------------|
+/// | q      | q_rad              | rad  | elbow flexion                                          |
+/// | q_0    | reference_rad      | rad  | the end of the range at which the muscle is shortest   |
+/// | L_0    | stress_free_length | m    | of belly and meshed tendons                            |
+/// | s      | pre_stretch        | 1    | length between the ends at q_0 over L_0                |
+/// | L_c    | cable_length       | m    | L_path(q_0) - s L_0                                    |
 ///
 /// Motions by amplitude a: in a = 0 ... 1 both ends go from the stress-free place (beside the bone by
 /// `standoff_m`) to the in-situ place at q_0; then a = 1 + |q - q_0|.

@@ -30,20 +30,12 @@ void read_stretch(const MuscleReading& m, const Configuration& configuration, So
   state.stretch_mean = sum / m.discretisation.volume();
 }
 
-/// Work of the reactions on the motion of the end: R . dp/dq + e . M dpsi/dq, by central differences of the
-/// place.
-double generalised_moment(const MuscleReading& m, const SolvedMuscle& state) {
-  constexpr double h = 1e-5;  // rad; the place is known to rounding, so the error is h^2 and 1e-16/h
-  const EndPlace after = end_place(m.body, state.q_rad + h), before = end_place(m.body, state.q_rad - h);
-  // The barycentre need not be the centre that the place is given for: it turns about that.
-  const EndPlace now = end_place(m.body, state.q_rad);
-  const double turning = (after.turn_rad - before.turn_rad) / (2.0 * h);
-  const Eigen::Vector3d velocity = (after.centre_m - before.centre_m) / (2.0 * h) +
-                                   turning * m.hinge.axis.cross(state.end_m - now.centre_m);
-  return state.wrench.force_n.dot(velocity) + turning * m.hinge.axis.dot(state.wrench.moment_n_m);
-}
-
 }  // namespace
+
+double generalised_moment(const MuscleReading& m, const SolvedMuscle& state) {
+  const EndVelocity v = end_velocity(m, state.q_rad, state.end_m);
+  return state.wrench.force_n.dot(v.linear) + v.turning * m.hinge.axis.dot(state.wrench.moment_n_m);
+}
 
 double centroid_line_m(const MuscleReading& m, const Configuration& configuration) {
   const auto& origin = std::get<GuidedMotion>(m.problem.conditions[0].kind);

@@ -10,14 +10,29 @@ struct MuscleReading {
   const Hinge& hinge;
   const Problem& problem;
   const Discretisation& discretisation;
+  AngleRange range = {};  ///< for slopes
 };
 
 /// Fills all but contacts, iterations and times.
 void read_state(const MuscleReading& muscle, const AcceptedState& accepted, SolvedMuscle& state);
 
+/// Slopes of force, tension and moment by angle and activation; `state` as read_state leaves it.
+/// ConvergenceFailure where the state is too near a limit point.
+void read_slopes(const MuscleReading& muscle, const AcceptedState& accepted, SolvedMuscle& state);
+
 /// Contacts of the problem, and the gap to the bones that are not part of it.
 void read_contacts(const MuscleReading& muscle, const std::vector<Bone>& left_out,
                    const AcceptedState& accepted, SolvedMuscle& state);
+
+/// How the distal end moves with the angle [m/rad, 1], of the end's barycentre `end_m`.
+struct EndVelocity {
+  Eigen::Vector3d linear;
+  double turning = 0.0;
+};
+EndVelocity end_velocity(const MuscleReading& muscle, double q_rad, const Eigen::Vector3d& end_m);
+
+/// Work of the reactions on that motion: R . v + w e . M.
+double generalised_moment(const MuscleReading& muscle, const SolvedMuscle& state);
 
 /// Length of the line through the centroids of cross-sections from end to end [m]; the sections lie at the
 /// cells' ends and middles, as planes of the stress-free body.

@@ -8,10 +8,14 @@
 #include <numbers>
 
 #include "fem/limb/muscle_reading.hpp"
+#include "fem/solve/constraints.hpp"
+#include "fem/solve/equations.hpp"
+#include "fem/solve/guided_motion.hpp"
 
 namespace brachium::fem {
 namespace {
 
+constexpr int bowing_passes = 3;
 constexpr double degree = std::numbers::pi / 180.0;
 
 std::string words(double q, double activation) {
@@ -21,7 +25,7 @@ std::string words(double q, double activation) {
 }  // namespace
 
 MuscleStates::MuscleStates(MuscleBody body, AngleRange range, Hinge hinge, std::vector<Bone> bones,
-                           SolvedMuscleOptions options)
+                           SolvedMuscleOptions options, const MuscleStates* like)
     : body_(std::move(body)),
       range_(range),
       hinge_(hinge),
@@ -42,19 +46,72 @@ MuscleStates::MuscleStates(MuscleBody body, AngleRange range, Hinge hinge, std::
     contact.smoothing_m = options_.contact_smoothing_m;
     built_.problem.contacts.push_back(contact);
   }
-  // From the stress-free place to the in-situ one.
+  known_.push_back(in_situ(like));
+}
+
+/// At the reference angle, passive: at once from where it probably is, else step by step from the stress-free
+/// place.
+MuscleStates::Known MuscleStates::in_situ(const MuscleStates* like) {
   Known reference;
+  reference.state.q_rad = reference.state.from_q_rad = body_.reference_rad;
   Phase phase;
   phase.name = "in situ";
   phase.amplitude = {{"origin", 1.0}, {"insertion", 1.0}};
+  for (const bool theirs : {true, false}) {
+    if (theirs && !like) continue;
+    const SolveState from = theirs ? adapted(*like, like->known_.front(), phase) : stretched(phase);
+    Known near = reference;
+    if (from.configuration.dofs.size() > 0 && attempt(from, phase, near).empty()) return near;
+  }
   phase.steps = 4;
-  reference.state.q_rad = reference.state.from_q_rad = body_.reference_rad;
   if (const std::string why = attempt({}, phase, reference); !why.empty()) {
     throw data::ConvergenceFailure(
         {fmt::format("{}: in-situ place at {}", body_.name, words(body_.reference_rad, 0.0)), why, 0, 0.0,
          0.0, body_.name});
   }
-  known_.push_back(std::move(reference));
+  return reference;
+}
+
+/// Stretched evenly to its in-situ length, at its own volume, and bowed aside as far as bones ask for.
+SolveState MuscleStates::stretched(const Phase& phase) const {
+  const auto& origin = std::get<GuidedMotion>(built_.problem.conditions[0].kind);
+  const auto& insertion = std::get<GuidedMotion>(built_.problem.conditions[1].kind);
+  const Eigen::Vector3d along = (insertion.centre_m - origin.centre_m).normalized();
+  const Eigen::Vector3d aside = Eigen::Vector3d::UnitX() * (body_.cable.anterior ? 1.0 : -1.0);
+  const Eigen::Vector3d place = guided_place(origin, 1.0).place_m;
+  const double s = body_.pre_stretch, thinner = 1.0 / std::sqrt(s);
+  SolveState state;
+  state.configuration.activation =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(built_.problem.mesh->regions.size()));
+  state.configuration.dofs = Eigen::VectorXd::Zero(discretisation_->dof_count());
+  const data::Mesh& mesh = discretisation_->mesh();
+  double bow = 0.0;
+  for (int pass = 0; pass < bowing_passes; ++pass) {
+    for (Eigen::Index p = 0; p < mesh.points.cols(); ++p) {
+      const Eigen::Vector3d X = mesh.points.col(p) - origin.centre_m;
+      const double z = X.dot(along);
+      const Eigen::Vector3d x = place + s * z * along + thinner * (X - z * along) +
+                                bow * std::sin(std::numbers::pi * z / body_.stress_free_length_m()) * aside;
+      state.configuration.dofs.segment<3>(3 * p) = x - mesh.points.col(p);
+    }
+    impose_ends(phase, state);
+    for (const Contact& contact : built_.problem.contacts) {
+      ContactOptions options;
+      options.penalty_pa_per_m = penalty_;
+      const ContactSurface surface(*discretisation_, "side", contact.body, options);
+      bow -= std::min(surface.least_gap_m(state.configuration.dofs, {}), 0.0);
+    }
+  }
+  state.guessed_pressure_pa =
+      Eigen::MatrixXd::Zero(discretisation_->pressures_per_cell(), discretisation_->cell_count());
+  return state;
+}
+
+void MuscleStates::impose_ends(const Phase& phase, SolveState& state) const {
+  const Constraints ends(built_.problem, discretisation_->node_count(), discretisation_->dof_count(), {});
+  ends.impose(Eigen::Vector2d(phase.amplitude.at("origin"), phase.amplitude.at("insertion")),
+              state.configuration.dofs);
+  state.amplitude = phase.amplitude;
 }
 
 void MuscleStates::choose_bones(const std::vector<Bone>& bones) {
@@ -99,6 +156,7 @@ std::string MuscleStates::attempt(const SolveState& from, const Phase& phase, Kn
   const bool warm = from.configuration.dofs.size() > 0;
   if (warm) {
     restart.configuration = from.configuration;
+    restart.guessed_pressure_pa = from.guessed_pressure_pa;
     restart.amplitude = restart.phase_amplitude = from.amplitude;
     restart.phase_activation = from.configuration.activation;
   }
@@ -119,8 +177,48 @@ std::string MuscleStates::attempt(const SolveState& from, const Phase& phase, Kn
 }
 
 void MuscleStates::evaluate(const AcceptedState& accepted, SolvedMuscle& state) const {
-  read_state({body_, hinge_, built_.problem, *discretisation_}, accepted, state);
-  read_contacts({body_, hinge_, built_.problem, *discretisation_}, left_out_, accepted, state);
+  const MuscleReading reading{body_, hinge_, built_.problem, *discretisation_, range_};
+  read_state(reading, accepted, state);
+  read_contacts(reading, left_out_, accepted, state);
+  if (options_.slopes) read_slopes(reading, accepted, state);
+}
+
+Phase MuscleStates::phase_to(double q, double activation) const {
+  Phase phase;
+  phase.name = words(q, activation);
+  phase.amplitude = {{"origin", 1.0}, {"insertion", amplitude(body_, q)}};
+  for (const std::string& region : built_.problem.mesh->regions) phase.activation[region] = activation;
+  return phase;
+}
+
+/// Another muscle's state with this one's ends and loads.
+SolveState MuscleStates::adapted(const MuscleStates& other, const Known& known, const Phase& phase) const {
+  SolveState state;
+  state.configuration = known.solved.configuration;
+  if (other.discretisation_->dof_count() != discretisation_->dof_count()) {
+    state.configuration.dofs.resize(0);
+    return state;
+  }
+  impose_ends(phase, state);
+  Equations theirs(other.built_.problem, options_.solve);
+  if (theirs.condensed()) state.guessed_pressure_pa = theirs.assembly().pressures(known.solved.configuration);
+  return state;
+}
+
+const SolvedMuscle& MuscleStates::solve_state_like(const MuscleStates& other, double q, double activation) {
+  const Known* theirs = other.find(q, activation);
+  if (theirs && !find(q, activation)) {
+    Known reached;
+    reached.state.q_rad = reached.state.from_q_rad = q;
+    reached.state.activation = reached.state.from_activation = activation;
+    const Phase phase = phase_to(q, activation);
+    const SolveState from = adapted(other, *theirs, phase);
+    if (from.configuration.dofs.size() > 0 && attempt(from, phase, reached).empty()) {
+      known_.push_back(std::move(reached));
+      return known_.back().state;
+    }
+  }
+  return solve_state(q, activation);
 }
 
 const SolvedMuscle& MuscleStates::solve_state(double q, double activation) {
@@ -141,10 +239,7 @@ const SolvedMuscle& MuscleStates::solve_state(double q, double activation) {
     reached.state.activation = activation;
     reached.state.from_q_rad = from->state.q_rad;
     reached.state.from_activation = from->state.activation;
-    Phase phase;
-    phase.name = words(q, activation);
-    phase.amplitude = {{"insertion", amplitude(body_, q)}};
-    for (const std::string& region : built_.problem.mesh->regions) phase.activation[region] = activation;
+    Phase phase = phase_to(q, activation);
     phase.steps =
         std::max({1, static_cast<int>(std::ceil(std::abs(q - from->state.q_rad) / options_.step_rad)),
                   static_cast<int>(

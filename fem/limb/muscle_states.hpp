@@ -39,6 +39,12 @@ struct BoneContact {
   double greatest_penetration_m = 0.0, greatest_pressure_pa = 0.0, area_m2 = 0.0;
 };
 
+/// How a figure moves with the state, by the tangent of the state itself (fem/solve/sensitivity.hpp).
+struct StateSlope {
+  double by_q = std::numeric_limits<double>::quiet_NaN();           ///< [unit/rad]
+  double by_activation = std::numeric_limits<double>::quiet_NaN();  ///< [unit]
+};
+
 struct SolvedMuscle {
   double q_rad = 0.0, activation = 0.0;
   double force_n = 0.0, tension_n = 0.0, moment_n_m = 0.0, length_m = 0.0;
@@ -49,9 +55,10 @@ struct SolvedMuscle {
   double moment_by_stress_n_m =
       0.0;  ///< about the hinge, from the stress at the end; compare arms.moment_n_m
   double stretch_min = 0.0, stretch_mean = 0.0,
-         stretch_max = 0.0;           ///< of fibres; the mean by reference volume
-  double energy_j = 0.0;              ///< stored, contact included
-  std::vector<BoneContact> contacts;  ///< of the bones that are modelled
+         stretch_max = 0.0;                                     ///< of fibres; the mean by reference volume
+  StateSlope force_slope_n, tension_slope_n, moment_slope_n_m;  ///< NaN where options leave them out
+  double energy_j = 0.0;                                        ///< stored, contact included
+  std::vector<BoneContact> contacts;                            ///< of the bones that are modelled
   double least_gap_left_out_m =
       std::numeric_limits<double>::infinity();  ///< to bones left out; negative: they overlap
   std::string stability;
@@ -73,6 +80,7 @@ struct SolvedMuscleOptions {
   double step_rad = 0.2, step_activation = 0.34;  ///< load steps to begin with
   double contact_penalty_pa_per_m = 0.0;          ///< 0: 30 (c1 + c2) over the mean size of a cell
   double contact_smoothing_m = 2e-4;
+  bool slopes = true;
   double touch_margin_norm = 0.3;  ///< bones farther than this share of the greatest radius are left out
 };
 
@@ -80,8 +88,9 @@ class MuscleStates {
  public:
   /// Builds the muscle and brings it to its in-situ place at the reference angle, passive. Throws InputError
   /// ("limb-geometry", ...), and ConvergenceFailure when that place cannot be reached.
+  /// `like`: states of a muscle that differs little and has the same mesh's topology, to begin from.
   MuscleStates(MuscleBody body, AngleRange range, Hinge hinge, std::vector<Bone> bones,
-               SolvedMuscleOptions options = {});
+               SolvedMuscleOptions options = {}, const MuscleStates* like = nullptr);
 
   const MuscleBody& body() const { return body_; }
   const AngleRange& range() const { return range_; }
@@ -93,6 +102,10 @@ class MuscleStates {
   /// The state; remembered, so that the same question costs nothing. Throws InputError("limb-range") outside
   /// the range of angles or [0, 1], ConvergenceFailure naming muscle, state and what was tried.
   const SolvedMuscle& solve_state(double q_rad, double activation);
+
+  /// The same, from the state that a muscle which differs little has there, its ends moved to where this
+  /// one's are; in the usual way where there is none or it is too far.
+  const SolvedMuscle& solve_state_like(const MuscleStates& other, double q_rad, double activation);
 
   /// Problem and placement of a state that was solved, for pictures. Throws InputError("limb-range") when it
   /// was not.
@@ -117,6 +130,11 @@ class MuscleStates {
   double penalty_ = 0.0;
 
   void choose_bones(const std::vector<Bone>& bones);
+  Phase phase_to(double q, double activation) const;
+  Known in_situ(const MuscleStates* like);
+  SolveState stretched(const Phase& phase) const;
+  void impose_ends(const Phase& phase, SolveState& state) const;
+  SolveState adapted(const MuscleStates& other, const Known& known, const Phase& phase) const;
   const Known* find(double q, double activation) const;
   std::vector<const Known*> nearest(double q, double activation) const;
   /// Empty text, or why it failed.

@@ -18,6 +18,12 @@ void Stepper::count(const NewtonOutcome& outcome, StepRecord& record) {
 Configuration Stepper::first_guess(const LoadPoint& from, const LoadPoint& to, double h, StepRecord& record,
                                    Eigen::MatrixXd& pressure) {
   Configuration guess = state_.configuration;
+  if (state_.guessed_pressure_pa.size() > 0) {
+    equations_.constraints().impose(to.amplitude, guess.dofs);
+    guess.activation = to.activation;
+    pressure = state_.guessed_pressure_pa;
+    return guess;
+  }
   if (!options_.predictor) factor_.forget();
   const bool fresh = !factor_.ready();
   if (fresh) factor_.make(equations_, state_.configuration, from);

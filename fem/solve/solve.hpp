@@ -67,6 +67,9 @@ struct SolveState {
   Eigen::VectorXd dofs_before;
   double step_before = 0.0;
   bool unstable = false;  ///< this state was found to be
+  /// Of a restart that is a guess rather than an equilibrium: pressures of condensed formulations, which it is
+  /// solved from as it stands, without a predictor (pressures_per_cell x n_cells). Empty: an equilibrium.
+  Eigen::MatrixXd guessed_pressure_pa;
 };
 
 struct Stability {
@@ -107,6 +110,8 @@ struct StepRecord {
   std::vector<IterationRecord> iterations;
 };
 
+class Sensitivity;
+
 /// What an observer sees at an accepted state.
 struct AcceptedState {
   const SolveState& state;
@@ -114,6 +119,7 @@ struct AcceptedState {
   const Eigen::VectorXd&
       internal_force;  ///< by dof, global axes [N]: at held dofs the reactions (minus applied loads)
   const Eigen::VectorXd& external_force;  ///< by dof, global axes [N]: applied loads
+  Sensitivity* sensitivity = nullptr;     ///< how the state moves with its loads (fem/solve/sensitivity.hpp)
 };
 
 struct Summary {

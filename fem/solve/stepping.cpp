@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fem/linear/stopwatch.hpp"
+#include "fem/solve/sensitivity.hpp"
 
 namespace brachium::fem {
 namespace {
@@ -108,6 +109,7 @@ void Stepper::accept(Attempt& attempt, double time, StepRecord& record) {
     state_.factorised_at = {};
   }
   state_.unstable = record.stability.verdict == "unstable";
+  state_.guessed_pressure_pa.resize(0, 0);
   const Assembled& sums = attempt.last.sums;
   record.phase_time = time;
   record.volume = sums.volume;
@@ -203,7 +205,11 @@ std::string Stepper::take_step() {
     return trouble;
   }
   summary_.steps.push_back(std::move(record));
-  if (observer_) observer_({state_, summary_.steps.back(), attempt.last.internal, attempt.last.external});
+  if (observer_) {
+    const LoadPoint load = programme_.at(state_, time);
+    Sensitivity sensitivity(equations_, factor_, state_.configuration, load);
+    observer_({state_, summary_.steps.back(), attempt.last.internal, attempt.last.external, &sensitivity});
+  }
   return {};
 }
 

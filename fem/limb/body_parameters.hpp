@@ -1,0 +1,28 @@
+#pragma once
+/// Numbers of a muscle by name: what fits and studies vary.
+///
+/// Passive fibres are named by the stretch λ_p at which they bear 0.1 MPa, c3 (λ_p^c4 - 1)/λ_p = 0.1 MPa: c3
+/// alone spans ten decades at the exponents in use. Setting the exponent keeps λ_p.
+
+#include <string>
+#include <vector>
+
+#include "fem/limb/muscle_body.hpp"
+
+namespace brachium::fem {
+
+struct BodyParameter {
+  std::string name, unit, meaning;
+  double lower = 0.0, upper = 0.0;  ///< of what a muscle may plausibly be; fits take these bounds unless told
+};
+
+/// belly_length_m, greatest_radius_m, pre_stretch, tendon lengths, max_stress_pa, the active bell, ground and
+/// passive fibres.
+const std::vector<BodyParameter>& body_parameters();
+
+/// Throw InputError("unknown-body-parameter") with the nearest name; `body_value` of passive_stretch also
+/// InputError("limb-geometry") where passive fibres never bear 0.1 MPa.
+double body_value(const MuscleBody& body, const std::string& name);
+void set_body_value(MuscleBody& body, const std::string& name, double value);
+
+}  // namespace brachium::fem
