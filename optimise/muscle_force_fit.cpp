@@ -1,0 +1,191 @@
+#include "optimise/muscle_force_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "data/model/error.hpp"
+#include "fem/limb/body_parameters.hpp"
+#include "optimise/verdicts.hpp"
+
+namespace brachium::optimise {
+namespace {
+
+constexpr double difference = 1e-4;  // of the bounds' width
+
+std::string place(const ReferenceForce& r) {
+  return fmt::format("{}, {:.4g} deg, activation {:.4g}", r.set, r.q_rad * 180.0 / std::numbers::pi,
+                     r.activation);
+}
+
+std::vector<Parameter> parameters_of(const fem::MuscleBody& start,
+                                     const std::vector<FreeBodyParameter>& free) {
+  std::vector<Parameter> parameters;
+  for (const FreeBodyParameter& f : free) {
+    Parameter p;
+    p.owner = start.name;
+    p.name = f.name;
+    p.start = fem::body_value(start, f.name);
+    for (const fem::BodyParameter& known : fem::body_parameters()) {
+      if (known.name != f.name) continue;
+      p.unit = known.unit;
+      p.lower = std::isfinite(f.lower) ? f.lower : known.lower;
+      p.upper = std::isfinite(f.upper) ? f.upper : known.upper;
+    }
+    p.scale = 0.5 * (p.upper - p.lower);
+    parameters.push_back(std::move(p));
+  }
+  check_parameters(parameters);
+  return parameters;
+}
+
+class Problem final : public LeastSquaresProblem {
+ public:
+  Problem(fem::MuscleBody start, std::vector<Parameter> parameters,
+          const std::vector<ReferenceForce>& references, const MuscleForceModel& model)
+      : start_(std::move(start)), parameters_(std::move(parameters)), references_(references), model_(model) {
+    const auto m = static_cast<Eigen::Index>(references.size());
+    force_.resize(m);
+    scale_.resize(m);
+    double sum = 0.0;
+    for (const ReferenceForce& r : references) sum += r.weight * r.force_n * r.force_n;
+    if (!(sum > 0.0)) {
+      throw data::InputError("no-references", fmt::format("{}: no reference force has a weight", start_.name),
+                             "give forces above 0 with weights above 0");
+    }
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const ReferenceForce& r = references[static_cast<std::size_t>(i)];
+      force_[i] = r.force_n;
+      scale_[i] = std::sqrt(r.weight / sum);
+    }
+  }
+
+  const std::vector<Parameter>& parameters() const override { return parameters_; }
+  std::size_t residual_count() const override { return references_.size(); }
+  std::string residual_name(std::size_t i) const override { return place(references_[i]); }
+
+  fem::MuscleBody body(const Eigen::VectorXd& x) const {
+    fem::MuscleBody b = start_;
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      fem::set_body_value(b, parameters_[j].name, x[static_cast<Eigen::Index>(j)]);
+    return b;
+  }
+
+  std::unique_ptr<Evaluator> evaluator() const override {
+    struct Own final : Evaluator {
+      Own(const Problem& p, std::unique_ptr<MuscleForces> f) : problem(p), forces(std::move(f)) {}
+      void evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) override {
+        const Eigen::VectorXd here = forces->forces_n(problem.body(x), false);
+        r = problem.scale_.cwiseProduct(here - problem.force_);
+        if (!J) return;
+        J->resize(r.size(), x.size());
+        for (Eigen::Index j = 0; j < x.size(); ++j) {
+          const Parameter& p = problem.parameters_[static_cast<std::size_t>(j)];
+          Eigen::VectorXd moved = x;
+          const double step = difference * (p.upper - p.lower);
+          moved[j] += x[j] + step <= p.upper ? step : -step;
+          const Eigen::VectorXd there = forces->forces_n(problem.body(moved), true);
+          J->col(j) = problem.scale_.cwiseProduct(there - here) / (moved[j] - x[j]);
+        }
+      }
+      const Problem& problem;
+      std::unique_ptr<MuscleForces> forces;
+    };
+    return std::make_unique<Own>(*this, model_.make(references_));
+  }
+
+ private:
+  fem::MuscleBody start_;
+  std::vector<Parameter> parameters_;
+  const std::vector<ReferenceForce>& references_;
+  const MuscleForceModel& model_;
+  Eigen::VectorXd force_, scale_;
+};
+
+}  // namespace
+
+MuscleForceFit fit_muscle_forces(const fem::MuscleBody& start, const std::vector<FreeBodyParameter>& free,
+                                 const std::vector<ReferenceForce>& references, const MuscleForceModel& model,
+                                 const SolveOptions& options) {
+  const Problem problem(start, parameters_of(start, free), references, model);
+  MuscleForceFit fit;
+  fit.summary = solve(problem, options);
+  fit.body = problem.body(fit.summary.x);
+  Eigen::VectorXd r;
+  Eigen::MatrixXd J;
+  problem.evaluator()->evaluate(fit.summary.x, r, &J);
+  fit.force_n = model.make(references)->forces_n(fit.body, false);
+  fit.statistics =
+      fit_statistics(problem.parameters(), fit.summary.x, r, J, {{start.name, 0, references.size()}});
+  VerdictInput input;
+  input.parameters = &problem.parameters();
+  input.x = input.x_uncorrected = fit.summary.x;
+  input.bias = Eigen::VectorXd::Zero(fit.summary.x.size());
+  input.statistics = &fit.statistics;
+  // Straight, not along profiles: a profile costs dozens of Jacobians, each of all states of all parameters.
+  const Eigen::VectorXd half =
+      student_quantile(fit.statistics.degrees_of_freedom) * fit.statistics.standard_error;
+  input.intervals = {fit.summary.x - half, fit.summary.x + half};
+  fit.verdicts = verdicts(input);
+  return fit;
+}
+
+std::vector<ForceAgreement> agreement(const std::vector<ReferenceForce>& references,
+                                      const Eigen::VectorXd& force_n) {
+  std::vector<ForceAgreement> out;
+  std::vector<double> error, size;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const ReferenceForce& r = references[i];
+    const std::string set = r.weight > 0.0 ? r.set : r.set + ", not fitted";
+    auto at = std::find_if(out.begin(), out.end(), [&](const ForceAgreement& a) { return a.set == set; });
+    if (at == out.end()) {
+      out.push_back({set});
+      error.push_back(0.0);
+      size.push_back(0.0);
+      at = out.end() - 1;
+    }
+    const auto k = static_cast<std::size_t>(at - out.begin());
+    const double e = force_n[static_cast<Eigen::Index>(i)] - r.force_n;
+    ++at->states;
+    error[k] += e * e;
+    size[k] += r.force_n * r.force_n;
+    if (std::abs(e) > std::abs(at->worst_n)) {
+      at->worst_n = e;
+      at->worst_q_rad = r.q_rad;
+      at->worst_activation = r.activation;
+    }
+  }
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].relative_l2 = std::sqrt(error[k] / size[k]);
+    out[k].rms_n = std::sqrt(error[k] / static_cast<double>(out[k].states));
+  }
+  return out;
+}
+
+data::Table agreement_table(const std::vector<ForceAgreement>& agreement) {
+  std::vector<std::string> set;
+  std::vector<double> states, relative, rms, worst, angle, activation;
+  for (const ForceAgreement& a : agreement) {
+    set.push_back(a.set);
+    states.push_back(static_cast<double>(a.states));
+    relative.push_back(a.relative_l2);
+    rms.push_back(a.rms_n);
+    worst.push_back(a.worst_n);
+    angle.push_back(a.worst_q_rad);
+    activation.push_back(a.worst_activation);
+  }
+  data::Table table;
+  table.title = "Agreement with the reference forces";
+  table.columns = {{"set", "", set},
+                   {"states", "1", states},
+                   {"relative_l2", "1", relative},
+                   {"rms", "N", rms},
+                   {"worst", "N", worst},
+                   {"worst_angle", "rad", angle},
+                   {"worst_activation", "1", activation}};
+  return table;
+}
+
+}  // namespace brachium::optimise
