@@ -267,17 +267,17 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
   const Index n = x.size();
   if (static_cast<Index>(fixed.size()) != n || !(noise.coefficient_of_variation >= 0.0) ||
       !(noise.overlapping_floor >= 0.0) || !(noise.subtracted_floor >= 0.0) ||
-      !(noise.rest_coefficient_of_variation >= 0.0) || !(noise.coefficient_uncertainty >= 0.0) || noise.replicates < 4 ||
-      noise.steps < 1 || !(noise.cutoff_hz > 0.0))
-    throw data::InputError("out-of-range", fmt::format("excitation noise: `coefficient_of_variation` {} >= "
-                                                       "0, `subtracted_floor` {} >= 0, `overlapping_floor` "
-                                                       "{} >= 0, `rest_coefficient_of_variation` {} >= 0, "
-                                                       "`cutoff_hz` {} > 0, `replicates` {} >= 4 and `steps` "
-                                                       "{} >= 1 are needed",
-                                                       noise.coefficient_of_variation, noise.subtracted_floor,
-                                                       noise.overlapping_floor,
-                                                       noise.rest_coefficient_of_variation, noise.cutoff_hz,
-                                                       noise.replicates, noise.steps));
+      !(noise.rest_coefficient_of_variation >= 0.0) || !(noise.coefficient_uncertainty >= 0.0) ||
+      noise.replicates < 4 || noise.steps < 1 || !(noise.cutoff_hz > 0.0))
+    throw data::InputError(
+        "out-of-range",
+        fmt::format("excitation noise: `coefficient_of_variation` {} >= "
+                    "0, `subtracted_floor` {} >= 0, `overlapping_floor` "
+                    "{} >= 0, `rest_coefficient_of_variation` {} >= 0, "
+                    "`cutoff_hz` {} > 0, `replicates` {} >= 4 and `steps` "
+                    "{} >= 1 are needed",
+                    noise.coefficient_of_variation, noise.subtracted_floor, noise.overlapping_floor,
+                    noise.rest_coefficient_of_variation, noise.cutoff_hz, noise.replicates, noise.steps));
   const auto& parameters = problem.parameters();
   const VectorXd scale = scale_of(parameters), lower = lower_of(parameters).cwiseQuotient(scale),
                  upper = upper_of(parameters).cwiseQuotient(scale);
@@ -291,6 +291,8 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
   VectorXd u = x.cwiseQuotient(scale);
   ExcitationErrorResult out;
   out.converged = false;
+  VectorXd before;
+  double relaxation = 1.0;
   for (int step = 0; step < noise.steps && !out.converged; ++step) {
     const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, false);
     std::vector<bool> held = fixed;
@@ -299,8 +301,16 @@ ExcitationErrorResult simulate_excitation_error(const CalibrationProblem& proble
         held[static_cast<std::size_t>(j)] = true;
     VectorXd p = newton_step(at.H, at.score, u, lower, upper, held);
     const double largest = p.lpNorm<Eigen::Infinity>();
+    // H leaves out how the force curves: steps that turn back on each other are relaxed (Aitken's factor for
+    // vectors, Irons & Tuck 1969, doi:10.1002/nme.1620010306).
+    if (step > 0) {
+      const VectorXd turn = p - before;
+      if (turn.squaredNorm() > 0.0)
+        relaxation = std::clamp(-relaxation * before.dot(turn) / turn.squaredNorm(), 0.1, 1.0);
+    }
+    before = p;
     if (largest > 0.5) p *= 0.5 / largest;  // half the bounds' half width at a time
-    u = (u + p).cwiseMax(lower).cwiseMin(upper);
+    u = (u + relaxation * p).cwiseMax(lower).cwiseMin(upper);
     out.converged = largest < 5e-3;
   }
   const Corrected at = corrected_score(problem, u, prior_weight, prior_mean, noise, threads, true);

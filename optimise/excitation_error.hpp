@@ -42,7 +42,7 @@ struct ExcitationNoise {
   double rest_coefficient_of_variation = 0.0;  ///< c_n, of the envelope at rest
   double cutoff_hz = 6.0;
   int replicates = 20;  ///< simulated data sets
-  int steps = 6;        ///< at most that many Newton steps on the corrected score
+  int steps = 12;       ///< at most that many Newton steps on the corrected score
   std::uint64_t seed = 1;
 };
 

@@ -13,6 +13,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <vector>
 
 #include "optimise/objective.hpp"
@@ -88,6 +89,8 @@ void run_levenberg_marquardt(Objective& objective, const SolveOptions& options, 
             step, lambda});
   };
   log();
+  constexpr int stall_iterations = 10;
+  std::deque<double> costs;
   result.reason = "iteration limit reached";
   while (result.iterations < options.max_iterations && objective.evaluations() < options.max_evaluations) {
     if (cost <= 0.5e-26 * static_cast<double>(r.size())) {  // root mean square of the scaled residuals 1e-13
@@ -111,6 +114,15 @@ void run_levenberg_marquardt(Objective& objective, const SolveOptions& options, 
       result.converged = true;
       result.reason = "step below tolerance";
       break;
+    }
+    costs.push_back(cost);
+    if (costs.size() > stall_iterations) {
+      if (costs.front() - cost <= options.stall_tolerance * cost) {
+        result.converged = true;
+        result.reason = "no further decrease";
+        break;
+      }
+      costs.pop_front();
     }
     ++result.iterations;
     const VectorXd trial = (u + p).cwiseMax(lower).cwiseMin(upper);
