@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "data/model/error.hpp"
@@ -49,16 +50,19 @@ class Problem final : public LeastSquaresProblem {
     const auto m = static_cast<Eigen::Index>(references.size());
     force_.resize(m);
     scale_.resize(m);
-    double sum = 0.0;
-    for (const ReferenceForce& r : references) sum += r.weight * r.force_n * r.force_n;
-    if (!(sum > 0.0)) {
+    std::map<std::string, double> square;
+    for (const ReferenceForce& r : references) square[r.set] += r.weight * r.force_n * r.force_n;
+    const auto sets =
+        std::count_if(square.begin(), square.end(), [](const auto& s) { return s.second > 0.0; });
+    if (sets == 0) {
       throw data::InputError("no-references", fmt::format("{}: no reference force has a weight", start_.name),
                              "give forces above 0 with weights above 0");
     }
     for (Eigen::Index i = 0; i < m; ++i) {
       const ReferenceForce& r = references[static_cast<std::size_t>(i)];
       force_[i] = r.force_n;
-      scale_[i] = std::sqrt(r.weight / sum);
+      const double whole = static_cast<double>(sets) * square.at(r.set);
+      scale_[i] = r.weight > 0.0 && whole > 0.0 ? std::sqrt(r.weight / whole) : 0.0;
     }
   }
 

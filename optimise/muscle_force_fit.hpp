@@ -1,9 +1,10 @@
 #pragma once
 /// Named parameters of a muscle body from forces that are known at angles and activations.
 ///
-///     minimise  f(x) = 1/2 sum_i w_i (F(q_i, a_i; x) - F_i)^2 / sum_i w_i F_i^2
+///     minimise  f(x) = 1/2 mean over sets of  sum_i w_i (F(q_i, a_i; x) - F_i)^2 / sum_i w_i F_i^2
 ///
-/// so that sqrt(2 f) is the relative L2 error.
+/// so that sqrt(2 f) is the root mean square of the sets' relative L2 errors: a set of few or small forces
+/// (the passive ones) counts as much as one of many.
 ///
 /// | symbol | identifier | unit | meaning                                                                |
 /// |--------|------------|------|------------------------------------------------------------------------|

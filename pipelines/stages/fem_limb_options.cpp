@@ -9,6 +9,7 @@
 #include "pipelines/stages/fem_muscle_map.hpp"
 #include "pipelines/stages/fem_option_kinds.hpp"
 #include "pipelines/stages/fem_options.hpp"
+#include "pipelines/stages/limb_fitted.hpp"
 #include "pipelines/stages/model_options.hpp"
 
 namespace brachium::pipelines {
@@ -105,6 +106,7 @@ PreparedLimb prepare_limb(const StageContext& context) {
     out.grouping = group_muscles(options, scene, coordinate, with ? &subject_of(*with) : nullptr, names);
     out.scaling = scale_limb(out.scene, *out.grouping, scene, coordinate, options.text("strength"));
   }
+  if (const StageData* fitted = context.maybe_input("fitted")) apply_fitted(*fitted, out.scene);
   change(options.number_map("pre_stretch"), out.scene, "pre_stretch",
          [](fem::MuscleBody& b) -> double& { return b.pre_stretch; });
   change(options.number_map("max_stress_Pa"), out.scene, "max_stress_Pa",

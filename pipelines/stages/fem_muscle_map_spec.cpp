@@ -39,7 +39,8 @@ void add_muscle_map_stage(Catalogue& catalogue) {
       "reach: the log and the table `muscles` say which.\n"
       "Sources: Valentin 2019, doi:10.18419/opus-10504, ch. 7; An et al. 1984, doi:10.1115/1.3138424 (TDM).";
   spec.output = PortType::tables;
-  spec.inputs = {{"subject", PortType::subject, "calibrated subject that the limb is scaled to", true}};
+  spec.inputs = {{"subject", PortType::subject, "calibrated subject that the limb is scaled to", true},
+                 {"fitted", PortType::tables, "parameters from optimise.muscle_forces", true}};
   spec.options = limb_option_specs();
   const std::vector<OptionSpec> own{
       texts_option("muscles", {}, "names or patterns; absent: all of the limb"),

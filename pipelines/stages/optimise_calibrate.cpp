@@ -86,6 +86,7 @@ void add_optimise_stages(Catalogue& catalogue) {
   add_optimise_calibrate(catalogue);
   add_optimise_cross_validate(catalogue);
   add_optimise_scenario(catalogue);
+  add_optimise_muscle_forces(catalogue);
 }
 
 }  // namespace brachium::pipelines

@@ -1,0 +1,184 @@
+/// optimise.muscle_forces: named parameters of continuum muscles from forces at angles and activations.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+#include <numbers>
+
+#include "data/model/parallel.hpp"
+#include "fem/limb/body_parameters.hpp"
+#include "optimise/muscle_force_fit.hpp"
+#include "optimise/verdicts.hpp"
+#include "pipelines/stages/common.hpp"
+#include "pipelines/stages/fem_muscle_map.hpp"
+#include "pipelines/stages/limb_fitted.hpp"
+#include "pipelines/stages/muscle_force_references.hpp"
+#include "pipelines/stages/optimise_muscle_forces.hpp"
+
+namespace brachium::pipelines {
+namespace {
+
+using optimise::FreeBodyParameter;
+using optimise::MuscleForceFit;
+using optimise::ReferenceForce;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// Of a table of the options: for this muscle, or for all.
+bool concerns(const Options& o, const std::string& muscle) {
+  return o.maybe_text("muscle").value_or(muscle) == muscle;
+}
+
+struct MuscleStudy {
+  fem::MuscleBody start;
+  std::vector<FreeBodyParameter> free;
+  std::vector<ReferenceForce> references;
+  std::optional<MuscleForceFit> strap, continuum;
+
+  const fem::MuscleBody& fitted() const { return continuum->body; }
+};
+
+MuscleStudy study_of(const Options& options, const fem::MuscleBody& body) {
+  MuscleStudy study;
+  study.start = body;
+  study.references = reference_forces(options, body.name);
+  for (const Options& o : options.tables("hold")) {
+    if (concerns(o, body.name)) fem::set_body_value(study.start, o.text("parameter"), o.number("value"));
+  }
+  for (const Options& o : options.tables("free")) {
+    if (!concerns(o, body.name)) continue;
+    FreeBodyParameter f{o.text("parameter")};
+    if (const auto v = o.maybe_number("start")) fem::set_body_value(study.start, f.name, *v);
+    f.lower = o.maybe_number("lower").value_or(fem::not_given);
+    f.upper = o.maybe_number("upper").value_or(fem::not_given);
+    study.free.push_back(f);
+  }
+  return study;
+}
+
+void fit(const Options& options, const PreparedLimb& limb,
+         const std::function<void(const optimise::Iteration&)>& progress, MuscleStudy& study) {
+  const bool rigid = limb.scene.variant == LimbVariant::rigid_tendon;
+  fem::MuscleBody from = study.start;
+  if (rigid) {
+    optimise::SolveOptions o;
+    o.starts = static_cast<std::size_t>(options.integer("strap_starts"));
+    study.strap =
+        optimise::fit_muscle_forces(from, study.free, study.references, *optimise::strap_force_model(), o);
+    if (options.text("begin_at") == "strap") from = study.strap->body;
+  }
+  optimise::ContinuumForceOptions c;
+  c.range = limb.scene.range;
+  c.hinge = limb.scene.hinge;
+  c.bones = limb.scene.humerus;
+  c.states = limb.solving;
+  c.states.slopes = false;
+  optimise::SolveOptions o;
+  o.max_iterations = static_cast<int>(options.integer("max_iterations"));
+  o.cost_tolerance = options.number("cost_tolerance");
+  o.progress = progress;
+  study.continuum =
+      optimise::fit_muscle_forces(from, study.free, study.references, *optimise::continuum_force_model(c), o);
+}
+
+data::Table force_table(const std::vector<MuscleStudy>& studies) {
+  TableBuilder table("forces");
+  table.text("muscle").text("set").number("angle_deg", "deg").number("activation", "1");
+  table.text("fitted").number("reference_N", "N").number("continuum_N", "N").number("strap_N", "N");
+  for (const MuscleStudy& s : studies) {
+    for (std::size_t i = 0; i < s.references.size(); ++i) {
+      const ReferenceForce& r = s.references[i];
+      const auto k = static_cast<Eigen::Index>(i);
+      table.row({s.start.name, r.set, r.q_rad / degree, r.activation,
+                 std::string(r.weight > 0.0 ? "yes" : "no"), r.force_n, s.continuum->force_n[k],
+                 s.strap ? s.strap->force_n[k] : std::numeric_limits<double>::quiet_NaN()});
+    }
+  }
+  return table.take();
+}
+
+data::Table agreement_table(const std::vector<MuscleStudy>& studies) {
+  TableBuilder table("agreement");
+  table.text("muscle").text("model").text("set").number("states", "1").number("relative_l2", "1");
+  table.number("rms_N", "N").number("worst_N", "N").number("worst_angle_deg", "deg");
+  table.number("worst_activation", "1");
+  for (const MuscleStudy& s : studies) {
+    for (const auto& [model, fit] : {std::pair{"continuum", &s.continuum}, std::pair{"strap", &s.strap}}) {
+      if (!fit->has_value()) continue;
+      for (const optimise::ForceAgreement& a : optimise::agreement(s.references, (*fit)->force_n))
+        table.row({s.start.name, std::string(model), a.set, static_cast<double>(a.states), a.relative_l2,
+                   a.rms_n, a.worst_n, a.worst_q_rad / degree, a.worst_activation});
+    }
+  }
+  return table.take();
+}
+
+data::Table verdicts_of(const std::vector<MuscleStudy>& studies,
+                        std::optional<MuscleForceFit> MuscleStudy::*fit) {
+  data::Subject all;
+  for (const MuscleStudy& s : studies) {
+    if ((s.*fit).has_value())
+      all.verdicts.insert(all.verdicts.end(), (s.*fit)->verdicts.begin(), (s.*fit)->verdicts.end());
+  }
+  return optimise::verdict_table(all);
+}
+
+std::vector<std::string> changed_parameters(const Options& options) {
+  std::vector<std::string> names;
+  for (const std::string list : {"hold", "free"}) {
+    for (const Options& o : options.tables(list)) {
+      if (std::find(names.begin(), names.end(), o.text("parameter")) == names.end())
+        names.push_back(o.text("parameter"));
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+void run_muscle_forces(const StageContext& context, StageOutput& out) {
+  const Options& options = *context.options;
+  const PreparedLimb limb = prepare_limb(context);
+  std::vector<std::string> names;
+  for (const LimbMuscle& m : limb.scene.muscles) names.push_back(m.body.name);
+  for (const std::string list : {"reference", "free", "hold"}) {
+    for (const Options& o : options.tables(list))
+      if (const auto name = o.maybe_text("muscle")) limb.scene.muscle(*name);  // throws where there is none
+  }
+  if (!options.texts("muscles").empty()) names = data::match_names(options.texts("muscles"), names, "muscle");
+  std::vector<MuscleStudy> studies;
+  for (const std::string& name : names) studies.push_back(study_of(options, limb.scene.muscle(name).body));
+
+  std::mutex one_at_a_time;
+  data::parallel_for(studies.size(), context.threads, [&](std::size_t k) {
+    const auto progress = [&](const optimise::Iteration& i) {
+      const std::lock_guard lock(one_at_a_time);
+      if (context.say)
+        context.say(fmt::format("{}: iteration {}, root mean square of the sets' relative L2 errors {:.2f} %",
+                                names[k], i.iteration, 100.0 * std::sqrt(2.0 * i.cost)));
+      if (context.progress)
+        context.progress(
+            static_cast<double>(i.iteration) / static_cast<double>(options.integer("max_iterations")),
+            fmt::format("{}, iteration {}", names[k], i.iteration));
+    };
+    fit(options, limb, progress, studies[k]);
+  });
+
+  std::vector<fem::MuscleBody> bodies;
+  for (const MuscleStudy& s : studies) {
+    bodies.push_back(s.fitted());
+    if (!s.continuum->summary.converged)
+      out.warn("not-converged", fmt::format("{}: {}", s.start.name, s.continuum->summary.reason),
+               "raise `max_iterations`, or free fewer parameters");
+    out.attributes["summary " + s.start.name] = s.continuum->summary.message();
+  }
+  out.tables["forces"] = force_table(studies);
+  out.tables["agreement"] = agreement_table(studies);
+  out.tables["verdicts"] = verdicts_of(studies, &MuscleStudy::continuum);
+  out.tables["strap_verdicts"] = verdicts_of(studies, &MuscleStudy::strap);
+  out.tables["fitted"] = fitted_table(bodies, changed_parameters(options));
+  out.attributes["variant"] = to_string(limb.scene.variant);
+}
+
+}  // namespace brachium::pipelines
