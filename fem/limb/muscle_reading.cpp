@@ -13,6 +13,14 @@
 namespace brachium::fem {
 namespace {
 
+ContactSurface contact_surface(const MuscleReading& m, const RigidShape& shape, double penalty,
+                               double smoothing) {
+  ContactOptions options;
+  options.penalty_pa_per_m = penalty;
+  options.smoothing_m = smoothing;
+  return ContactSurface(m.discretisation, "side", shape, options);
+}
+
 void read_stretch(const MuscleReading& m, const Configuration& configuration, SolvedMuscle& state) {
   const PointFields fields = point_fields(m.problem, m.discretisation, configuration);
   state.stretch_min = fields.fibre_stretch.minCoeff();
@@ -28,6 +36,36 @@ void read_stretch(const MuscleReading& m, const Configuration& configuration, So
     }
   }
   state.stretch_mean = sum / m.discretisation.volume();
+}
+
+/// About the hinge: of the stress in the cross-section in the middle of the belly, and of the contact beyond
+/// it. At the end itself stress is singular along the clamped edge.
+double moment_by_stress(const MuscleReading& m, const Configuration& now) {
+  const auto& origin = std::get<GuidedMotion>(m.problem.conditions[0].kind);
+  const auto& insertion = std::get<GuidedMotion>(m.problem.conditions[1].kind);
+  const Eigen::Vector3d along = (insertion.centre_m - origin.centre_m).normalized();
+  const double middle = m.body.tendon_origin_m + m.body.belly_length_m * (m.body.belly_cells / 2) /
+                                                     static_cast<double>(m.body.belly_cells);
+  const Eigen::Vector3d plane = origin.centre_m + middle * along;
+  Eigen::Vector3d moment =
+      section_stress_wrench(m.problem, m.discretisation, now, plane, along, m.hinge.centre_m).moment_n_m;
+  if (m.problem.contacts.empty()) return m.hinge.axis.dot(moment);
+  // Off the faces between cells, where a plane would cut along edges.
+  const SectionFigures cut = section(
+      m.discretisation, now, plane + 1e-3 * m.body.belly_length_m / m.body.belly_cells * along, along);
+  for (const Contact& contact : m.problem.contacts) {
+    const ContactPoints points =
+        contact_surface(m, contact.body, contact.penalty_pa_per_m, contact.smoothing_m)
+            .points(now.dofs, {}, {});
+    for (Eigen::Index i = 0; i < points.pressure_pa.size(); ++i) {
+      const Eigen::Vector3d x = points.position_m.col(i);
+      if (!(points.pressure_pa[i] > 0.0) || (x - cut.centroid_m).dot(cut.normal) < 0.0) continue;
+      const Eigen::Vector3d f =
+          points.pressure_pa[i] * points.area_m2[i] * distance(contact.body, x).gradient;
+      moment += (x - m.hinge.centre_m).cross(f);
+    }
+  }
+  return m.hinge.axis.dot(moment);
 }
 
 }  // namespace
@@ -70,8 +108,7 @@ void read_state(const MuscleReading& m, const AcceptedState& accepted, SolvedMus
   state.identity_error =
       std::max(std::abs(direct - state.arms.moment_n_m), std::abs(direct - state.arms.moment_of_line_n_m)) /
       state.force_n;
-  state.moment_by_stress_n_m = m.hinge.axis.dot(
-      stress_wrench(m.problem, m.discretisation, now, "insertion", m.hinge.centre_m).moment_n_m);
+  state.moment_by_stress_n_m = moment_by_stress(m, now);
   state.moment_n_m = generalised_moment(m, state);
   state.length_m = centroid_line_m(m, now) + m.body.cable_length_m();
   read_stretch(m, now, state);
@@ -83,23 +120,17 @@ void read_state(const MuscleReading& m, const AcceptedState& accepted, SolvedMus
 void read_contacts(const MuscleReading& m, const std::vector<Bone>& left_out, const AcceptedState& accepted,
                    SolvedMuscle& state) {
   const Eigen::VectorXd& dofs = accepted.state.configuration.dofs;
-  const auto surface = [&](const RigidShape& shape, double penalty, double smoothing) {
-    ContactOptions options;
-    options.penalty_pa_per_m = penalty;
-    options.smoothing_m = smoothing;
-    return ContactSurface(m.discretisation, "side", shape, options);
-  };
   for (const Contact& contact : m.problem.contacts) {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(dofs.size());
-    const ContactSums sums =
-        surface(contact.body, contact.penalty_pa_per_m, contact.smoothing_m).add_force(dofs, {}, {}, force);
+    const ContactSums sums = contact_surface(m, contact.body, contact.penalty_pa_per_m, contact.smoothing_m)
+                                 .add_force(dofs, {}, {}, force);
     state.energy_j += sums.energy_j;
     state.contacts.push_back({contact.name, sums.force_n.norm(), sums.force_n, sums.greatest_penetration_m,
                               sums.greatest_pressure_pa, sums.area_m2});
   }
   for (const Bone& bone : left_out) {
     state.least_gap_left_out_m =
-        std::min(state.least_gap_left_out_m, surface(bone.shape, 1.0, 0.0).least_gap_m(dofs, {}));
+        std::min(state.least_gap_left_out_m, contact_surface(m, bone.shape, 1.0, 0.0).least_gap_m(dofs, {}));
   }
 }
 

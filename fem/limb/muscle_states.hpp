@@ -52,8 +52,9 @@ struct SolvedMuscle {
   Eigen::Vector3d end_m = Eigen::Vector3d::Zero();  ///< barycentre x_s of the distal end
   ResultantLeverArms arms;
   double identity_error = 0.0;  ///< largest difference of the three moments of the identity, over |R| 1 m
-  double moment_by_stress_n_m =
-      0.0;  ///< about the hinge, from the stress at the end; compare arms.moment_n_m
+  /// About the hinge, from the stress in the middle of the belly and the contact beyond it: its difference to
+  /// arms.moment_n_m measures the mesh.
+  double moment_by_stress_n_m = 0.0;
   double stretch_min = 0.0, stretch_mean = 0.0,
          stretch_max = 0.0;                                     ///< of fibres; the mean by reference volume
   StateSlope force_slope_n, tension_slope_n, moment_slope_n_m;  ///< NaN where options leave them out

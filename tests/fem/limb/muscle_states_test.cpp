@@ -6,6 +6,7 @@
 
 #include "data/model/error.hpp"
 #include "fem/limb/upper_limb.hpp"
+#include "fem/quantities/stress_wrench.hpp"
 
 namespace brachium::fem {
 namespace {
@@ -61,6 +62,22 @@ TEST(MuscleStates, MomentIsMinusTheSlopeOfTheEnergyWithContactPressed) {
         (states.solve_state(q + h, 0.0).energy_j - states.solve_state(q - h, 0.0).energy_j) / (2.0 * h);
     EXPECT_NEAR(here.moment_n_m, -slope, 2e-3 * std::abs(slope));
     EXPECT_GT(std::abs(here.moment_n_m - slope), 1.5 * std::abs(slope)) << "the wrong sign must show";
+  }
+}
+
+TEST(MuscleStates, MomentByStressInTheBellyIsThatOfTheReactions) {
+  for (const bool biceps : {true, false}) {
+    MuscleStates states = muscle(biceps);
+    for (const double activation : {0.0, 1.0}) {
+      const SolvedMuscle& s = states.solve_state(75.0 * degree, activation);
+      EXPECT_NEAR(s.moment_by_stress_n_m, s.arms.moment_n_m, 0.05 * std::abs(s.arms.moment_n_m));
+      const Discretisation d(states.problem().mesh, states.problem().formulation);
+      const Wrench face = stress_wrench(states.problem(), d, states.solved(s.q_rad, activation).configuration,
+                                        "insertion", Eigen::Vector3d::Zero());
+      EXPECT_GT(std::abs(face.moment_n_m.z() - s.arms.moment_n_m),
+                1.5 * std::abs(s.moment_by_stress_n_m - s.arms.moment_n_m))
+          << "stress is singular along the edge of the clamped face";
+    }
   }
 }
 

@@ -14,12 +14,12 @@ using verification::box_mesh;
 
 constexpr double mu = 3e4, kappa = 5e5;
 
-Problem neo_hooke_box(Formulation formulation, VolumetricLaw law) {
+Problem neo_hooke_box(Formulation formulation, VolumetricLaw law, double distortion = 0.15) {
   Problem problem;
   problem.mesh = box_mesh({.type = cell_type(formulation),
                            .cells = {2, 2, 1},
                            .size_m = Vector3d(0.2, 0.1, 0.1),
-                           .distortion = 0.15});
+                           .distortion = distortion});
   problem.formulation = formulation;
   problem.materials = {{NeoHooke{mu}, {law, kappa}}};
   return problem;
@@ -66,6 +66,26 @@ TEST(StressWrench, OfAUniformStateIsStressTimesArea) {
     EXPECT_LT((w.force_n - expected).norm(), 1e-10 * expected.norm()) << to_string(formulation);
     const Vector3d moment = (F * Vector3d(0.2, 0.05, 0.05) - point).cross(expected);
     EXPECT_LT((w.moment_n_m - moment).norm(), 1e-10 * moment.norm()) << to_string(formulation);
+  }
+}
+
+TEST(StressWrench, OfASectionIsThatOfTheEndInAUniformState) {
+  for (const Formulation formulation :
+       {Formulation::q2_p1_discontinuous, Formulation::p2b_p1_discontinuous}) {
+    const Problem problem = neo_hooke_box(formulation, VolumetricLaw::quadratic, 0.0);
+    const Discretisation d(problem.mesh, formulation);
+    const Configuration c = affine::configuration(d, affine::gradient());
+    const Vector3d point(0.1, 0.0, 0.3);
+    const Wrench end = stress_wrench(problem, d, c, "x1", point);
+    const double middle = d.mesh().points.row(0).maxCoeff() / 2.0;
+    const Wrench w = section_stress_wrench(problem, d, c, {middle, 0.0, 0.0}, Vector3d::UnitX(), point);
+    EXPECT_LT((w.force_n - end.force_n).norm(), 1e-10 * end.force_n.norm()) << to_string(formulation);
+    // The same force acts at another place: half the body nearer.
+    const Vector3d lever = affine::gradient() * Vector3d(middle, 0.0, 0.0);
+    const Vector3d expected = end.moment_n_m - lever.cross(end.force_n);
+    EXPECT_LT((w.moment_n_m - expected).norm(), 1e-10 * end.moment_n_m.norm()) << to_string(formulation);
+    EXPECT_THROW(section_stress_wrench(problem, d, c, {0.9 * middle, 0.0, 0.0}, Vector3d::UnitX(), point),
+                 data::InputError);
   }
 }
 
