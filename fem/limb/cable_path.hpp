@@ -39,6 +39,8 @@ class CablePath {
 
   double length_m() const { return first_ + arc_ + last_; }
   double arc_m() const { return arc_; }  ///< 0: the path is straight
+  /// From the insertion to where the path has left the obstacle; 0: the path is straight.
+  double past_obstacle_m() const { return arc_ > 0.0 ? last_ + arc_ : 0.0; }
   const Eigen::Vector2d& insertion_m() const { return insertion_; }
   Eigen::Vector2d pull() const;  ///< t, at the insertion
   double lever_arm_m() const;    ///< r

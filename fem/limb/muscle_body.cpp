@@ -131,6 +131,14 @@ EndPlace end_place(const MuscleBody& body, double q) {
           std::atan2(at_reference.x() * now.y() - at_reference.y() * now.x(), at_reference.dot(now))};
 }
 
+MuscleBody with_tendons(MuscleBody body, double origin_m, double insertion_m) {
+  const double in_situ_m = body.pre_stretch * body.stress_free_length_m();
+  body.tendon_origin_m += origin_m;
+  body.tendon_insertion_m += insertion_m;
+  body.pre_stretch = (in_situ_m + origin_m + insertion_m) / body.stress_free_length_m();
+  return body;
+}
+
 double amplitude(const MuscleBody& body, double q) {
   return 1.0 + std::abs(q - body.reference_rad);
 }

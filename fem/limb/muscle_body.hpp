@@ -50,6 +50,10 @@ struct MuscleBody {
   double cable_length_m() const;  ///< L_c
 };
 
+/// The muscle-tendon complex of a rigid-tendon muscle: ends of the rigid tendon meshed, their slack the length
+/// they are given, so that the belly is as long in situ as before.
+MuscleBody with_tendons(MuscleBody body, double origin_m, double insertion_m);
+
 /// Angles that a muscle is built for.
 struct AngleRange {
   double lower_rad = 0.0, upper_rad = 0.0;

@@ -37,6 +37,7 @@ MuscleStates::MuscleStates(MuscleBody body, AngleRange range, Hinge hinge, std::
                  ? options_.contact_penalty_pa_per_m
                  : 30.0 * (body_.material.muscle.c1_pa + body_.material.muscle.c2_pa) / cell;
   choose_bones(bones);
+  watch_obstacle();
   for (const Bone& bone : bones_) {
     Contact contact;
     contact.name = bone.name;
@@ -127,6 +128,24 @@ void MuscleStates::choose_bones(const std::vector<Bone>& bones) {
         "{:.1f} mm",
         body_.name, bone.name, touches ? "is modelled" : "is left out", 1e3 * distance, 1e3 * reach));
   }
+}
+
+/// A meshed end that the path leads around the obstacle is bent by it as a whole: said, since what a tendon
+/// does there is not what it models.
+void MuscleStates::watch_obstacle() {
+  constexpr int steps = 280;
+  double first = std::numeric_limits<double>::quiet_NaN(), last = first;
+  for (int i = 0; i <= steps; ++i) {
+    const double q = range_.lower_rad + (range_.upper_rad - range_.lower_rad) * i / steps;
+    if (CablePath(body_.cable, q).past_obstacle_m() <= body_.cable_length_m()) continue;
+    if (std::isnan(first)) first = q;
+    last = q;
+  }
+  if (!std::isnan(first))
+    log_.push_back(
+        fmt::format("{}: its distal end lies on the obstacle between {:.1f} and {:.1f} deg: the rigid "
+                    "tendon is too short to keep it off",
+                    body_.name, first / degree, last / degree));
 }
 
 const MuscleStates::Known* MuscleStates::find(double q, double activation) const {

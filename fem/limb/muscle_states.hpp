@@ -131,6 +131,7 @@ class MuscleStates {
   double penalty_ = 0.0;
 
   void choose_bones(const std::vector<Bone>& bones);
+  void watch_obstacle();
   Phase phase_to(double q, double activation) const;
   Known in_situ(const MuscleStates* like);
   SolveState stretched(const Phase& phase) const;

@@ -114,20 +114,19 @@ TEST(LimbScene, ABoneMayBeAClosedTriangleMesh) {
 }
 
 TEST(LimbScene, MeshesTendonsInTheMuscleTendonComplexOnly) {
-  std::string text = shipped_text();
-  for (const char* at : {"pre_stretch = 1.08", "pre_stretch = 1.18"})
-    text = replaced(
-        text, at,
-        std::string(at) +
-            "\ntendons = { origin_mm = 20, insertion_mm = 30, transition_mm = 15, pre_stretch = 1.06 }");
+  const std::string text =
+      replaced(shipped_text(), "insertion_mm = 15.0", "insertion_mm = 14.0, transition_mm = 5.0");
   const LimbScene rigid = parse_limb(text, "limb.toml", {}, LimbVariant::rigid_tendon);
   EXPECT_EQ(rigid.muscle("biceps").body.tendon_insertion_m, 0.0);
   EXPECT_EQ(rigid.muscle("biceps").body.pre_stretch, 1.08);
   const LimbScene mtc = parse_limb(text, "limb.toml", {}, LimbVariant::mtc);
-  EXPECT_NEAR(mtc.muscle("biceps").body.tendon_insertion_m, 0.03, 1e-15);
-  EXPECT_EQ(mtc.muscle("biceps").body.pre_stretch, 1.06);
+  EXPECT_NEAR(mtc.muscle("biceps").body.tendon_insertion_m, 0.014, 1e-15);
+  EXPECT_NEAR(mtc.muscle("biceps").body.transition_m, 0.005, 1e-15);
+  EXPECT_GT(mtc.muscle("triceps").body.tendon_origin_m, 0.0);
+  EXPECT_LT(mtc.muscle("biceps").body.pre_stretch, 1.08) << "of belly and tendons together";
   EXPECT_THAT(
-      mistakes(replaced(shipped_text(), "[load]", "[load]"), LimbVariant::mtc),
+      mistakes(replaced(shipped_text(), "tendons = { origin_mm = 12.0", "# { origin_mm = 12.0"),
+               LimbVariant::mtc),
       HasSubstr("error[missing-key]: muscle `biceps` has no `tendons`, which the variant mtc meshes\n"));
 }
 
