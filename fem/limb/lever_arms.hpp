@@ -4,7 +4,7 @@
 ///   VRLA   l = e . ((x_s - x_J) x R) / |R|
 ///   VRLA+  l = e . ((x_m - x_J) x R) / |R|,   x_m = x_s + R x M / |R|^2   (the line of action)
 ///   TDM    l = -dL/dq, of the passive lengths over the range            (An et al. 1984,
-///   doi:10.1115/1.3138424) identity   e . [(x_s - x_J) x R + M] = e . [(x_m - x_J) x R + M_par] = e . sum
+///   doi:10.1115/1.3138494) identity   e . [(x_s - x_J) x R + M] = e . [(x_m - x_J) x R + M_par] = e . sum
 ///   (x_i - x_J) x f_i
 ///
 /// | symbol | identifier   | unit | meaning                                                       |

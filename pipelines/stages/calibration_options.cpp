@@ -84,6 +84,7 @@ std::vector<OptionSpec> calibration_option_specs() {
       optional_number("excitation_cv", "", at_least(0), "coefficient of variation of the envelopes' noise; default: from the EMG's band and the envelope's cut-off; 0: none"),
       number_option("emg_band_low_hz", "Hz", 30.0, above(0), "lower edge of the conditioned EMG's band, for that noise"),
       number_option("emg_band_high_hz", "Hz", 220.0, above(0), "upper edge of the flat band that varies as much as EMG does: its statistical bandwidth is about 190 Hz"),
+      number_option("noise_band_high_hz", "Hz", 500.0, above(0), "upper edge of the sensor noise that emg.envelope took off at rest: half the sampling rate, or the amplifier's"),
       number_option("envelope_lowpass_hz", "Hz", 6.0, above(0), "cut-off of the envelope, for that noise"),
       integer_option("noise_replicates", 20, between(4, 10000), "simulated data sets behind the bias and the intervals"),
       flag_option("correct_bias", true, "take the bias from errors in the excitation off the fitted values"),
@@ -91,6 +92,17 @@ std::vector<OptionSpec> calibration_option_specs() {
   for (OptionSpec& o : muscle_option_specs()) specs.push_back(std::move(o));
   for (OptionSpec& o : activation_option_specs()) specs.push_back(std::move(o));
   return specs;
+}
+
+/// Envelope at rest that emg.envelope has taken off, in units of excitation: root mean square over the channels; 0 where
+/// it took off none, or did not normalise.
+double rest_level(const StageData& excitation) {
+  const auto found = excitation.tables.find("normalisation");
+  if (found == excitation.tables.end() || found->second.rows() == 0) return 0.0;
+  const data::Table& table = found->second;
+  double square = 0.0;
+  for (std::size_t k = 0; k < table.rows(); ++k) square += std::pow(table.numbers("rest_V")[k] / table.numbers("reference_V")[k], 2);
+  return std::sqrt(square / static_cast<double>(table.rows()));
 }
 
 optimise::CalibrationOptions calibration_options(const StageContext& context, const data::Coordinate& coordinate) {
@@ -131,6 +143,11 @@ optimise::CalibrationOptions calibration_options(const StageContext& context, co
   const std::optional<double> cv = o.maybe_number("excitation_cv");
   c.excitation_noise.coefficient_of_variation = cv ? *cv : optimise::envelope_coefficient_of_variation(band_low, band_high, cutoff);
   c.excitation_noise.cutoff_hz = cutoff;
+  // What was taken off at rest is sensor noise, flat up to its own edge: it beats with the EMG where both are.
+  const double floor = rest_level(context.input("excitation")), noise_high = std::max(band_high, o.number("noise_band_high_hz"));
+  c.excitation_noise.subtracted_floor = floor;
+  c.excitation_noise.overlapping_floor = floor * std::sqrt((band_high - band_low) / (noise_high - band_low));
+  c.excitation_noise.rest_coefficient_of_variation = cv && *cv == 0.0 ? 0.0 : optimise::envelope_coefficient_of_variation(band_low, noise_high, cutoff);
   c.excitation_noise.replicates = static_cast<int>(o.integer("noise_replicates"));
   c.excitation_noise.seed = c.solver.seed;
   c.correct_bias = o.boolean("correct_bias");

@@ -246,7 +246,7 @@ std::string muscle_map_methods(const ReportContext& context) {
       "(Valentin "
       "2019, doi:10.18419/opus-10504, ch. 7). Lever arms are those of the passive length (tendon "
       "displacement, An et al. "
-      "1984, doi:10.1115/1.3138424), of the resultant force, and of its line of action.",
+      "1984, doi:10.1115/1.3138494), of the resultant force, and of its line of action.",
       map.attributes.at("variant") == "mtc" ? "meshed tendons" : "inextensible tendons",
       map.tables.at("states").rows());
 }

@@ -37,7 +37,7 @@ void add_muscle_map_stage(Catalogue& catalogue) {
       "unstable are named, and no surrogate is made over them. Contact is built only with the bones that a "
       "muscle can "
       "reach: the log and the table `muscles` say which.\n"
-      "Sources: Valentin 2019, doi:10.18419/opus-10504, ch. 7; An et al. 1984, doi:10.1115/1.3138424 (TDM).";
+      "Sources: Valentin 2019, doi:10.18419/opus-10504, ch. 7; An et al. 1984, doi:10.1115/1.3138494 (TDM).";
   spec.output = PortType::tables;
   spec.inputs = {{"subject", PortType::subject, "calibrated subject that the limb is scaled to", true},
                  {"fitted", PortType::tables, "parameters from optimise.muscle_forces", true}};

@@ -17,6 +17,7 @@
 #include "pipelines/stages/fem_checkpoint.hpp"
 #include "pipelines/stages/fem_field_files.hpp"
 #include "pipelines/stages/fem_muscle_map.hpp"
+#include "pipelines/stages/fem_upper_limb.hpp"
 #include "pipelines/stages/fem_options.hpp"
 #include "pipelines/stages/fem_problem.hpp"
 #include "pipelines/stages/fem_quantities.hpp"
@@ -265,6 +266,7 @@ void add_fem_stages(Catalogue& catalogue) {
   spec.methods = fem_methods;
   catalogue.add(std::move(spec));
   add_muscle_map_stage(catalogue);
+  add_upper_limb_stage(catalogue);
 }
 
 }  // namespace brachium::pipelines

@@ -11,6 +11,7 @@
 #include "hill/forward.hpp"
 #include "pipelines/stages/common.hpp"
 #include "pipelines/stages/model_options.hpp"
+#include "pipelines/stages/moment_frames.hpp"
 
 namespace brachium::pipelines {
 namespace {
@@ -24,17 +25,6 @@ struct Row {
   std::size_t unloaded, slack, clamped;
 };
 
-data::SignalInfo like(const data::TimeGrid& grid, const std::string& name, Quantity quantity, const std::string& unit) {
-  data::SignalInfo info;
-  info.name = name;
-  info.quantity = quantity;
-  info.unit = unit;
-  info.rate_hz = grid.rate_hz;
-  info.start_time_s = grid.start_s;
-  info.count = grid.count;
-  return info;
-}
-
 struct Chain {
   const data::Scene& scene;
   const data::Coordinate& coordinate;
@@ -42,37 +32,6 @@ struct Chain {
   hill::MuscleModelOptions model;
   bool clamp;
 };
-
-/// Kinematics on the activations' own grid, where both are known.
-struct Grid {
-  data::TimeGrid time;
-  std::vector<double> angle, velocity;
-  std::size_t first = 0;  ///< activation sample that frame 0 is
-};
-
-Grid common_grid(const data::Signal& activation, const data::Signal& angle, const std::optional<data::Signal>& velocity, const std::string& trial) {
-  const data::SignalInfo& a = activation.info;
-  double from = std::max(a.start_time_s, angle.info.start_time_s), to = std::min(a.end_time_s(), angle.info.end_time_s());
-  if (velocity) {
-    from = std::max(from, velocity->info.start_time_s);
-    to = std::min(to, velocity->info.end_time_s());
-  }
-  const double slack = 1e-6;  // of a sample: time stamps are decimal numbers
-  const double first = std::ceil((from - a.start_time_s) * a.rate_hz - slack), last = std::floor((to - a.start_time_s) * a.rate_hz + slack);
-  if (!(last - first >= 8)) {
-    throw data::InputError("no-common-window", fmt::format("activation ({:.3f}-{:.3f} s) and joint angle ({:.3f}-{:.3f} s) of trial `{}` do not overlap", a.start_time_s,
-                                                           a.end_time_s(), angle.info.start_time_s, angle.info.end_time_s(), trial),
-                           "check the start times in the session description");
-  }
-  Grid grid;
-  grid.first = static_cast<std::size_t>(first);
-  grid.time = {a.rate_hz, a.start_time_s + first / a.rate_hz, static_cast<std::size_t>(last - first) + 1};
-  std::vector<double> times(grid.time.count);
-  for (std::size_t i = 0; i < times.size(); ++i) times[i] = grid.time.time_s(i);
-  grid.angle = data::evaluate_at(angle, times);
-  if (velocity) grid.velocity = data::evaluate_at(*velocity, times);
-  return grid;
-}
 
 std::vector<Row> run_trial(const StageContext& context, const Chain& chain, const std::string& name, StageOutput& out) {
   const StageData& activations = context.input("activation");
@@ -83,8 +42,8 @@ std::vector<Row> run_trial(const StageContext& context, const Chain& chain, cons
     velocity = signal_of(kinematics, name, Quantity::joint_velocity, chain.coordinate.name);
   }
   const std::size_t t = trial_index(activations, name);
-  std::optional<Grid> grid;
-  std::vector<double> total, length, arm, speed;
+  std::optional<MomentFrames> grid;
+  std::vector<double> total, passive_total, length, arm, speed;
   std::vector<Row> rows;
   hill::MuscleScratch scratch;
   hill::MuscleTrace trace;
@@ -93,26 +52,17 @@ std::vector<Row> run_trial(const StageContext& context, const Chain& chain, cons
     if (muscle.path.kind == data::PathGeometry::Kind::none || muscle.path.coordinate != chain.coordinate.name) continue;
     const data::Signal activation = activations.signals->signal(t, activations.signals->info().trials[t].signal_index(muscle.name));
     if (!grid) {
-      grid = common_grid(activation, angle, velocity, name);
+      grid = moment_frames(activation.info, angle, velocity, name);
       total.assign(grid->time.count, 0.0);
+      passive_total.assign(grid->time.count, 0.0);
       length.resize(grid->time.count);
       arm.resize(grid->time.count);
-      speed.resize(grid->velocity.size());
+      speed.resize(grid->velocity_rad_s.size());
     }
-    std::vector<double> a(activation.samples.begin() + static_cast<std::ptrdiff_t>(grid->first),
-                          activation.samples.begin() + static_cast<std::ptrdiff_t>(grid->first + grid->time.count));
     std::size_t clamped = 0;
-    for (double& value : a) {
-      if (value >= 0.0 && value <= 1.0) continue;
-      if (!chain.clamp && value > 1.0) {
-        throw data::InputError("activation-range", fmt::format("activation of `{}` in trial `{}` is {:.4f}, above 1", muscle.name, name, value),
-                               "the maximum contraction was not maximal; choose `outside_activation = \"clamp\"` to count and clamp such samples");
-      }
-      value = std::clamp(value, 0.0, 1.0);
-      ++clamped;
-    }
+    const std::vector<double> a = activation_at(*grid, activation, chain.clamp, name, clamped);
     const limb::MusclePath path(muscle.name, muscle.path, chain.coordinate);
-    path.evaluate(grid->angle, grid->velocity, length, arm, speed);
+    path.evaluate(grid->angle_rad, grid->velocity_rad_s, length, arm, speed);
     const data::MuscleParameters& parameters = chain.subject ? chain.subject->muscle(muscle.name).parameters : muscle.parameters;
     const hill::MuscleTendon unit(muscle.name, parameters, chain.model);
     hill::forward(unit, {grid->time.rate_hz, length, speed, arm}, a, scratch, trace);
@@ -121,6 +71,9 @@ std::vector<Row> run_trial(const StageContext& context, const Chain& chain, cons
     double active = 0.0, passive = 0.0;
     for (std::size_t i = 0; i < grid->time.count; ++i) {
       total[i] += trace.moment_N_m[i];
+      // The share of the parallel elastic element in the fibre's force; what damps belongs to the active part.
+      const double parts = trace.active_norm[i] + trace.passive_norm[i];
+      if (parts > 0.0) passive_total[i] += trace.moment_N_m[i] * trace.passive_norm[i] / parts;
       row.peak_force = std::max(row.peak_force, trace.force_N[i]);
       row.mean_moment += trace.moment_N_m[i] / static_cast<double>(grid->time.count);
       active += std::abs(trace.active_norm[i]);
@@ -133,7 +86,7 @@ std::vector<Row> run_trial(const StageContext& context, const Chain& chain, cons
     rows.push_back(row);
 
     const auto write = [&](const std::string& suffix, Quantity quantity, const std::string& unit_text, const std::vector<double>& samples) {
-      data::Signal signal{like(grid->time, muscle.name + suffix, quantity, unit_text), samples};
+      data::Signal signal{signal_on(grid->time, muscle.name + suffix, quantity, unit_text), samples};
       signal.info.muscle = muscle.name;
       out.signals->write(name, signal);
     };
@@ -143,9 +96,10 @@ std::vector<Row> run_trial(const StageContext& context, const Chain& chain, cons
     write("_moment_arm", Quantity::moment_arm, "m", arm);
   }
   if (!grid) throw data::InputError("missing-muscle", fmt::format("no muscle of the scene spans the coordinate `{}`", chain.coordinate.name), "give muscles a geometry");
-  data::Signal moment{like(grid->time, chain.coordinate.name + "_moment", Quantity::joint_moment, "N m"), total};
+  data::Signal moment{signal_on(grid->time, chain.coordinate.name + "_moment", Quantity::joint_moment, "N m"), total};
   moment.info.coordinate = chain.coordinate.name;
   out.signals->write(name, moment);
+  out.signals->write(name, {signal_on(grid->time, passive_moment_name(chain.coordinate.name), Quantity::joint_moment, "N m"), passive_total});
   return rows;
 }
 

@@ -1,0 +1,74 @@
+#include "pipelines/stages/moment_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/model/error.hpp"
+
+namespace brachium::pipelines {
+
+MomentFrames moment_frames(const data::SignalInfo& activation, const data::Signal& angle,
+                           const std::optional<data::Signal>& velocity, const std::string& trial) {
+  const data::SignalInfo& a = activation;
+  double from = std::max(a.start_time_s, angle.info.start_time_s),
+         to = std::min(a.end_time_s(), angle.info.end_time_s());
+  if (velocity) {
+    from = std::max(from, velocity->info.start_time_s);
+    to = std::min(to, velocity->info.end_time_s());
+  }
+  const double slack = 1e-6;  // of a sample: time stamps are decimal numbers
+  const double first = std::ceil((from - a.start_time_s) * a.rate_hz - slack),
+               last = std::floor((to - a.start_time_s) * a.rate_hz + slack);
+  if (!(last - first >= 8)) {
+    throw data::InputError(
+        "no-common-window",
+        fmt::format(
+            "activation ({:.3f}-{:.3f} s) and joint angle ({:.3f}-{:.3f} s) of trial `{}` do not overlap",
+            a.start_time_s, a.end_time_s(), angle.info.start_time_s, angle.info.end_time_s(), trial),
+        "check the start times in the session description");
+  }
+  MomentFrames frames;
+  frames.first = static_cast<std::size_t>(first);
+  frames.time = {a.rate_hz, a.start_time_s + first / a.rate_hz, static_cast<std::size_t>(last - first) + 1};
+  std::vector<double> times(frames.time.count);
+  for (std::size_t i = 0; i < times.size(); ++i) times[i] = frames.time.time_s(i);
+  frames.angle_rad = data::evaluate_at(angle, times);
+  if (velocity) frames.velocity_rad_s = data::evaluate_at(*velocity, times);
+  return frames;
+}
+
+data::SignalInfo signal_on(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity,
+                           const std::string& unit) {
+  data::SignalInfo info;
+  info.name = name;
+  info.quantity = quantity;
+  info.unit = unit;
+  info.rate_hz = grid.rate_hz;
+  info.start_time_s = grid.start_s;
+  info.count = grid.count;
+  return info;
+}
+
+std::vector<double> activation_at(const MomentFrames& frames, const data::Signal& activation, bool clamp,
+                                  const std::string& trial, std::size_t& brought) {
+  std::vector<double> a(
+      activation.samples.begin() + static_cast<std::ptrdiff_t>(frames.first),
+      activation.samples.begin() + static_cast<std::ptrdiff_t>(frames.first + frames.time.count));
+  for (double& value : a) {
+    if (value >= 0.0 && value <= 1.0) continue;
+    if (!clamp && value > 1.0) {
+      throw data::InputError("activation-range",
+                             fmt::format("activation of `{}` in trial `{}` is {:.4f}, above 1",
+                                         activation.info.name, trial, value),
+                             "the maximum contraction was not maximal; choose `outside_activation = "
+                             "\"clamp\"` to count and clamp such samples");
+    }
+    value = std::clamp(value, 0.0, 1.0);
+    ++brought;
+  }
+  return a;
+}
+
+}  // namespace brachium::pipelines
