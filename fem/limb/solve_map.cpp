@@ -128,6 +128,12 @@ MuscleState map_state(const SolvedMuscle& s, const Hinge& hinge) {
   state.wrench_force_n = s.wrench.force_n;
   state.wrench_moment_n_m = s.wrench.moment_n_m + (s.end_m - hinge.centre_m).cross(s.wrench.force_n);
   state.moment_n_m = s.moment_n_m;
+  const auto gradient = [](const StateSlope& slope) -> std::optional<Gradient> {
+    if (!std::isfinite(slope.by_q) || !std::isfinite(slope.by_activation)) return std::nullopt;
+    return Gradient{slope.by_q, slope.by_activation};
+  };
+  state.force_gradient = gradient(s.force_slope_n);
+  state.moment_gradient = gradient(s.moment_slope_n_m);
   state.vrla_m = s.arms.vrla_m;
   state.vrla_plus_m = s.arms.vrla_plus_m;
   double contact = 0.0;

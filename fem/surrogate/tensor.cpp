@@ -118,4 +118,38 @@ Surrogate hermite_surrogate(const SampleGrid& grid, const HermiteOptions& option
   return surrogate;
 }
 
+SampleSet with_spline_slopes(const SampleSet& values, const SampleSet& known) {
+  SampleSet plain = values;
+  for (Sample& s : plain.samples) s.dtheta.resize(0), s.dalpha.resize(0);
+  const SampleGrid grid = as_grid(plain), exact = as_grid(known);
+  check_derivatives(exact);
+  TensorOptions options;
+  options.estimate_error = false;
+  if (grid.theta_rad.size() > 5) options.theta = ThetaCurve::quintic;
+  if (grid.activation.size() > 5) options.alpha = AlphaCurve::quintic;
+  const Surrogate spline = tensor_spline(grid, options);
+  const auto n = static_cast<Index>(values.outputs.size());
+  std::vector<std::pair<Index, Index>> same;  // places of outputs whose derivatives are known
+  for (std::size_t o = 0; o < known.outputs.size(); ++o)
+    same.emplace_back(static_cast<Index>(spline.output(known.outputs[o])), static_cast<Index>(o));
+  SampleSet out{values.outputs, {}};
+  std::vector<OutputValue> at(values.outputs.size());
+  for (std::size_t k = 0; k < grid.samples.samples.size(); ++k) {
+    Sample s = grid.samples.samples[k];
+    spline.evaluate(s.at.theta_rad, s.at.activation, at);
+    s.dtheta.resize(n);
+    s.dalpha.resize(n);
+    for (Index o = 0; o < n; ++o) {
+      s.dtheta(o) = at[static_cast<std::size_t>(o)].dtheta;
+      s.dalpha(o) = at[static_cast<std::size_t>(o)].dalpha;
+    }
+    for (const auto& [to, from] : same) {
+      s.dtheta(to) = exact.samples.samples.at(k).dtheta(from);
+      s.dalpha(to) = exact.samples.samples.at(k).dalpha(from);
+    }
+    out.samples.push_back(std::move(s));
+  }
+  return out;
+}
+
 }  // namespace brachium::fem

@@ -41,4 +41,10 @@ struct HermiteOptions {
 /// (less with fewer nodes). Throws InputError("missing-derivative") naming the first state without.
 Surrogate hermite_surrogate(const SampleGrid& grid, const HermiteOptions& options = {});
 
+/// Samples with slopes at every state: of outputs whose derivatives are known, those; of the others, the
+/// slopes of the spline (of degree 5 where there are nodes enough) through their values. `known` holds some
+/// of the outputs, at the same states. Throws InputError as as_grid, "missing-derivative" where `known` has
+/// none, "unknown-output".
+SampleSet with_spline_slopes(const SampleSet& values, const SampleSet& known);
+
 }  // namespace brachium::fem

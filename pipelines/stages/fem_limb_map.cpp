@@ -64,6 +64,10 @@ fem::Surrogate make_map_surrogate(const fem::MuscleMap& map, const std::string& 
     return fem::sparse_surrogate(
         samples, map.bounds,
         method == "sparse_included" ? fem::SparseBoundary::included : fem::SparseBoundary::modified);
+  if (method == "hermite") {
+    const fem::SampleSet exact = complete_samples(map, {MapOutput::force, MapOutput::moment});
+    return fem::hermite_surrogate(fem::as_grid(fem::with_spline_slopes(samples, exact)));
+  }
   fem::TensorOptions options;
   if (method == "quintic") options.theta = fem::ThetaCurve::quintic, options.alpha = fem::AlphaCurve::quintic;
   return fem::tensor_spline(fem::as_grid(samples), options);

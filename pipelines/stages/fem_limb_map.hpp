@@ -34,8 +34,9 @@ struct LimbMap {
 /// Outputs that every state has, force and moment first.
 std::vector<fem::MapOutput> outputs_of(const fem::MuscleMap& map);
 
-/// `method`: "cubic", "quintic", "sparse_included", "sparse_modified". Throws InputError as the makers of
-/// surrogates do: "not-a-grid" naming a state that is missing or failed.
+/// `method`: "hermite" (by the exact slopes of force and moment), "cubic", "quintic", "sparse_included",
+/// "sparse_modified". Throws InputError as the makers of
+/// surrogates do: "missing-derivative", "not-a-grid" naming a state that is missing or failed.
 fem::Surrogate make_map_surrogate(const fem::MuscleMap& map, const std::string& method);
 
 /// Throws InputError("not-a-muscle-map") where the stage left no map, and as make_map_surrogate.

@@ -95,6 +95,7 @@ void check_design(const std::vector<fem::StatePoint>& asked, const fem::StateBou
     fem::MuscleState state;
     state.at = s;
     state.vrla_m = state.vrla_plus_m = state.contact_force_n = 0.0;
+    state.force_gradient = state.moment_gradient = fem::Gradient{};
     state.fibre_stretch = fem::FibreStretch{};
     map.states.push_back(state);
   }

@@ -52,8 +52,10 @@ void add_muscle_map_stage(Catalogue& catalogue) {
                   {required_number("angle_deg", "deg", {}, "joint angle"),
                    required_number("activation", "1", between(0, 1), "of the muscle")},
                   "states one by one"),
-      choice_option("surrogate", "cubic", {"cubic", "quintic", "sparse_included", "sparse_modified", "none"},
-                    "splines through a grid, or sparse-grid splines with or without states on the boundary"),
+      choice_option(
+          "surrogate", "hermite", {"hermite", "cubic", "quintic", "sparse_included", "sparse_modified", "none"},
+          "Hermite interpolation by the exact slopes of force and moment, splines through a grid, or "
+          "sparse-grid splines with or without states on the boundary"),
       list_of_numbers("show_activation", "1", {0.0, 1.0}, between(0, 1),
                       "activations whose states are drawn in the report's 3D view"),
       optional_text("coordinate", "joint coordinate of the scene, where the limb is scaled to a subject")};

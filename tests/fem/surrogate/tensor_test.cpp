@@ -236,5 +236,28 @@ TEST(SampleGrids, NameTheStateThatIsMissing) {
   }
 }
 
+// Outputs whose derivatives are known keep them; the others get those of a spline, which is exact for
+// polynomials.
+TEST(WithSplineSlopes, KeepsWhatIsKnownAndFindsTheRest) {
+  SampleSet values{{"known", "rest"}, {}}, known{{"known"}, {}};
+  for (const StatePoint& p : grid_states(equidistant(0.2, 2.4, 7), equidistant(0.0, 1.0, 4))) {
+    const double t = p.theta_rad, a = p.activation;
+    values.samples.push_back({p, Eigen::Vector2d(std::sin(t) * a, t * t * t * a * a)});
+    known.samples.push_back({p, Eigen::VectorXd::Constant(1, std::sin(t) * a),
+                             Eigen::VectorXd::Constant(1, 7.0), Eigen::VectorXd::Constant(1, -3.0)});
+  }
+  const SampleSet all = with_spline_slopes(values, known);
+  ASSERT_TRUE(all.has_derivatives());
+  for (const Sample& s : all.samples) {
+    const double t = s.at.theta_rad, a = s.at.activation;
+    EXPECT_EQ(s.dtheta(0), 7.0);
+    EXPECT_EQ(s.dalpha(0), -3.0);
+    EXPECT_NEAR(s.dtheta(1), 3.0 * t * t * a * a, 1e-10);
+    EXPECT_NEAR(s.dalpha(1), 2.0 * t * t * t * a, 1e-10);
+  }
+  for (Sample& s : known.samples) s.dtheta.resize(0);
+  EXPECT_THROW(with_spline_slopes(values, known), data::InputError);
+}
+
 }  // namespace
 }  // namespace brachium::fem::test
