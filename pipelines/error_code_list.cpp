@@ -156,6 +156,8 @@ const std::vector<ErrorCode>& error_codes() {
       {"file-exists", "A file of that name exists and is not overwritten."},
       {"frames-left-out",
        "Frames outside the range of a model are left out, marked in the signal `use` and counted."},
+      {"in-situ-shape",
+       "A stress-free shape is sought from a loaded one that does not fit the mesh or what holds it."},
       {"inactive-region", "A region is activated whose material has no active part."},
       {"incompressible-displacement", "An incompressible material needs a finite element with a pressure."},
       {"inconsistent-geometry",

@@ -171,9 +171,12 @@ void check(const MuscleBody& body, const AngleRange& range) {
 }
 
 BuiltMuscle build(const MuscleBody& body, const AngleRange& range) {
+  return build(body, range, std::make_shared<const data::Mesh>(stress_free_mesh(body)));
+}
+
+BuiltMuscle build(const MuscleBody& body, const AngleRange& range, std::shared_ptr<const data::Mesh> mesh) {
   check(body, range);
   BuiltMuscle built;
-  auto mesh = std::make_shared<data::Mesh>(stress_free_mesh(body));
   TissueRules rules;
   if (body.fibres == "harmonic") {
     rules.fibres.push_back({{}, HarmonicFibres{"origin", "insertion", std::nullopt}});

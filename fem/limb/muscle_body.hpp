@@ -50,8 +50,8 @@ struct MuscleBody {
   double cable_length_m() const;  ///< L_c
 };
 
-/// The muscle-tendon complex of a rigid-tendon muscle: ends of the rigid tendon meshed, their slack the length
-/// they are given, so that the belly is as long in situ as before.
+/// The muscle-tendon complex of a rigid-tendon muscle: ends of the rigid tendon meshed, their slack the
+/// length they are given, so that the belly is as long in situ as before.
 MuscleBody with_tendons(MuscleBody body, double origin_m, double insertion_m);
 
 /// Angles that a muscle is built for.
@@ -70,6 +70,10 @@ struct BuiltMuscle {
   data::Table directions, harmonic;  ///< figures of the fibres, for the log
 };
 BuiltMuscle build(const MuscleBody& body, const AngleRange& range);
+/// The same of a stress-free mesh of its own, with the surfaces and fields of the other's; its ends must lie
+/// where the other's do (fem/solve/stress_free.hpp finds one from a shape in situ).
+BuiltMuscle build(const MuscleBody& body, const AngleRange& range,
+                  std::shared_ptr<const data::Mesh> stress_free);
 
 /// Amplitude of both conditions at an angle.
 double amplitude(const MuscleBody& body, double q_rad);

@@ -30,7 +30,7 @@ UpperLimb generic_arm(const LimbMesh& mesh) {
                  {"distal humerus", Capsule{{0.0, 0.0, -0.02}, {0.0, 0.0, 0.02}, 0.012}}};
 
   arm.biceps = muscle("biceps", mesh);
-  arm.biceps.cable = {{0.022, 0.337}, 0.0385, -16.0 * degree, {0.0, 0.0}, 0.0378, true};
+  arm.biceps.cable = {{0.022, 0.337}, 0.0393, -11.0 * degree, {0.0029, -0.0019}, 0.0357, true};
   arm.biceps.belly_length_m = 0.200;
   arm.biceps.profile_m = {0.0135, 0.019, 0.0205, 0.019, 0.0135};
   arm.biceps.pre_stretch = 1.08;
