@@ -76,7 +76,7 @@ class LdlSolver final : public SymmetricSolver {
     for (int c = 0; c < columns; ++c) {
       double* column = x.data() + static_cast<std::size_t>(c) * y.size();
       for (std::size_t k = 0; k < y.size(); ++k) y[k] = column[unknown[k]];
-      multifrontal_->solve(y.data());
+      multifrontal_->solve(y.data(), pool_);
       for (std::size_t k = 0; k < y.size(); ++k) column[unknown[k]] = y[k];
     }
   }

@@ -77,6 +77,12 @@ void Multifrontal::make_units() {
       unit_priority_[unit] += unit_priority_[unit_of[parent]];
     }
   }
+  std::vector<std::size_t> level(unit_first_.size(), 0);
+  for (int unit = static_cast<int>(unit_first_.size()) - 1; unit >= 0; --unit) {
+    if (unit_parent_[unit] >= 0) level[unit] = level[unit_parent_[unit]] + 1;
+    if (unit_levels_.size() <= level[unit]) unit_levels_.resize(level[unit] + 1);
+    unit_levels_[level[unit]].push_back(unit);
+  }
 }
 
 long long Multifrontal::memory_bytes() const {

@@ -36,8 +36,8 @@ class Multifrontal {
   void factorise(std::span<const double> values, std::span<const double> diagonal, double zero_pivot,
                  TaskPool& pool, const DenseKernels& kernels);
 
-  /// y := (L D L')^-1 y, y by position.
-  void solve(double* y) const;
+  /// y := (L D L')^-1 y, y by position; the same bits for any number of threads.
+  void solve(double* y, TaskPool& pool) const;
 
  private:
   struct Job;  // of one factorisation
@@ -59,8 +59,9 @@ class Multifrontal {
   void add_to_schur(const Child& child, DenseFront& front, int column, int row);
   std::vector<Child> children_of(int f, const DenseFront& front) const;
   DenseFront view(int f) const;  // shape and factor
-  void forward(int f, double* y, double* padded) const;
-  void backward(int f, double* y, double* padded, double* sums) const;
+  struct Scratch;
+  void forward(int f, double* y, double* carried, Scratch& scratch, TaskPool& pool) const;
+  void backward(int f, double* y, Scratch& scratch, TaskPool& pool) const;
 
   AssemblyTree tree_;
   EntryMap map_;
@@ -72,6 +73,7 @@ class Multifrontal {
   // Units of the task tree: whole subtrees with little work, single fronts above them.
   std::vector<int> unit_first_, unit_last_, unit_parent_;
   std::vector<double> unit_priority_;
+  std::vector<std::vector<int>> unit_levels_;  // by distance from a root
 };
 
 }  // namespace brachium::fem

@@ -1,5 +1,10 @@
 // Back-substitution: forward through the fronts with L, then D, then backward with L'. L is read once each
-// way, in the order in which it is stored.
+// way.
+//
+// Forward, what a front takes off the rows below it is carried to its parent, which adds what its children
+// carry in their order; backward, a front reads rows of its ancestors and writes its own. So fronts of
+// different subtrees do not meet, and the sums do not depend on who computes them: threads work on subtrees,
+// and help each other in large fronts, whose panels go in parts that depend on the front alone.
 
 #include <algorithm>
 
@@ -31,20 +36,47 @@ void add_panel(const DenseFront& f, int panel, int columns, const double* y, dou
   }
 }
 
+constexpr int kPart = 16;                    // panels
+constexpr long long kSharedValues = 150000;  // of L below the pivots, from which on threads share a front
+
+bool shared(const DenseFront& f, int pivots) {
+  return static_cast<long long>(f.panels() - f.pivot_panels()) * kRows * pivots > kSharedValues;
+}
+
 double l_entry(const DenseFront& f, int row, int column) {
   return f.l_group(row / 4)[4 * column + row % 4];
 }
 
 }  // namespace
 
-// `padded`: the front's pivots and update rows, each filled up to whole panels.
-void Multifrontal::forward(int f, double* y, double* padded) const {
+// Scratch of one task: a front's pivots and update rows, each filled up to whole panels; partial sums.
+struct Multifrontal::Scratch {
+  explicit Scratch(int largest_front)
+      : padded(static_cast<std::size_t>(largest_front) + 2 * kRows),
+        sums(4 * static_cast<std::size_t>(largest_front)) {}
+  std::vector<double> padded, sums, part_sums;
+};
+
+void Multifrontal::forward(int f, double* y, double* carried, Scratch& scratch, TaskPool& pool) const {
   const Front& shape = tree_.fronts[f];
   const DenseFront front = view(f);
-  const int w = shape.pivots, padded_pivots = front.pivot_panels() * kRows;
-  double *own = padded, *below = padded + padded_pivots;
+  const int w = shape.pivots, padded_pivots = front.pivot_panels() * kRows,
+            panels_below = front.panels() - front.pivot_panels();
+  double *own = scratch.padded.data(), *below = own + padded_pivots;
   std::copy(y + shape.first, y + shape.first + w, own);
   std::fill(own + w, own + padded_pivots, 0.0);
+  std::fill(below, below + panels_below * kRows, 0.0);
+  for (int c = tree_.child_start[f]; c < tree_.child_start[f + 1]; ++c) {
+    const Front& child = tree_.fronts[tree_.child[c]];
+    const int* place = tree_.row_in_parent.data() + child.row_start;
+    const double* value = carried + child.row_start;
+    for (int i = 0; i < child.updates; ++i) {
+      if (place[i] < w)
+        own[place[i]] += value[i];
+      else
+        below[place[i] - w] += value[i];
+    }
+  }
   for (int first = 0, b = 0; first < w; first += kBlock, ++b) {
     const int m = std::min(kBlock, w - first);
     for (int row = first; row < first + m; row += kRows)
@@ -59,27 +91,47 @@ void Multifrontal::forward(int f, double* y, double* padded) const {
     }
   }
   std::copy(own, own + w, y + shape.first);
-  std::fill(below, below + (front.panels() - front.pivot_panels()) * kRows, 0.0);
-  for (int p = front.pivot_panels(); p < front.panels(); ++p) {
-    subtract_panel(front, p, w, own, below + (p - front.pivot_panels()) * kRows);
+  const auto part = [&](int number) {
+    for (int p = number * kPart; p < std::min(panels_below, (number + 1) * kPart); ++p)
+      subtract_panel(front, front.pivot_panels() + p, w, own, below + p * kRows);
+  };
+  const int parts = (panels_below + kPart - 1) / kPart;
+  if (shared(front, w)) {
+    pool.run_loop(parts, part);
+  } else {
+    for (int k = 0; k < parts; ++k) part(k);
   }
-  const int* row = tree_.row.data() + shape.row_start;
-  for (int i = 0; i < shape.updates; ++i) y[row[i]] += below[i];
+  std::copy(below, below + shape.updates, carried + shape.row_start);
 }
 
-void Multifrontal::backward(int f, double* y, double* padded, double* sums) const {
+void Multifrontal::backward(int f, double* y, Scratch& scratch, TaskPool& pool) const {
   const Front& shape = tree_.fronts[f];
   const DenseFront front = view(f);
-  const int w = shape.pivots, padded_pivots = front.pivot_panels() * kRows;
-  double *own = padded, *below = padded + padded_pivots;
+  const int w = shape.pivots, padded_pivots = front.pivot_panels() * kRows,
+            panels_below = front.panels() - front.pivot_panels();
+  double *own = scratch.padded.data(), *below = own + padded_pivots, *sums = scratch.sums.data();
   std::copy(y + shape.first, y + shape.first + w, own);
   std::fill(own + w, own + padded_pivots, 0.0);
   const int* row = tree_.row.data() + shape.row_start;
   for (int i = 0; i < shape.updates; ++i) below[i] = y[row[i]];
-  std::fill(below + shape.updates, below + (front.panels() - front.pivot_panels()) * kRows, 0.0);
+  std::fill(below + shape.updates, below + panels_below * kRows, 0.0);
   std::fill(sums, sums + 4 * w, 0.0);
-  for (int p = front.pivot_panels(); p < front.panels(); ++p) {
-    add_panel(front, p, w, below + (p - front.pivot_panels()) * kRows, sums);
+  if (shared(front, w)) {
+    const int parts = (panels_below + kPart - 1) / kPart;
+    const auto width = static_cast<std::size_t>(4 * w);
+    scratch.part_sums.assign(static_cast<std::size_t>(parts) * width, 0.0);
+    pool.run_loop(parts, [&](int number) {
+      for (int p = number * kPart; p < std::min(panels_below, (number + 1) * kPart); ++p)
+        add_panel(front, front.pivot_panels() + p, w, below + p * kRows,
+                  scratch.part_sums.data() + static_cast<std::size_t>(number) * width);
+    });
+    for (int k = 0; k < parts; ++k) {
+      const double* part = scratch.part_sums.data() + static_cast<std::size_t>(k) * width;
+      for (std::size_t i = 0; i < width; ++i) sums[i] += part[i];
+    }
+  } else {
+    for (int p = 0; p < panels_below; ++p)
+      add_panel(front, front.pivot_panels() + p, w, below + p * kRows, sums);
   }
   for (int b = front.blocks() - 1; b >= 0; --b) {
     const int first = b * kBlock, m = std::min(kBlock, w - first);
@@ -98,11 +150,12 @@ void Multifrontal::backward(int f, double* y, double* padded, double* sums) cons
   std::copy(own, own + w, y + shape.first);
 }
 
-void Multifrontal::solve(double* y) const {
-  std::vector<double> padded(static_cast<std::size_t>(largest_front_) + 2 * kRows);
-  std::vector<double> sums(4 * static_cast<std::size_t>(largest_front_));
-  const int count = static_cast<int>(tree_.fronts.size());
-  for (int f = 0; f < count; ++f) forward(f, y, padded.data());
+void Multifrontal::solve(double* y, TaskPool& pool) const {
+  std::vector<double> carried(tree_.row.size());
+  pool.run_tree(unit_parent_, unit_priority_, [&](int unit) {
+    Scratch scratch(largest_front_);
+    for (int f = unit_first_[unit]; f <= unit_last_[unit]; ++f) forward(f, y, carried.data(), scratch, pool);
+  });
   const int n = static_cast<int>(factor_.d.size());
   for (int k = 0; k < n; ++k) {
     if (factor_.e[k] != 0.0) {
@@ -116,7 +169,15 @@ void Multifrontal::solve(double* y) const {
       y[k] /= factor_.d[k];
     }
   }
-  for (int f = count - 1; f >= 0; --f) backward(f, y, padded.data(), sums.data());
+  for (const std::vector<int>& level : unit_levels_) {
+    const std::vector<int> apart(level.size(), -1);
+    const std::vector<double> priority(level.size(), 0.0);
+    pool.run_tree(apart, priority, [&](int k) {
+      const int unit = level[static_cast<std::size_t>(k)];
+      Scratch scratch(largest_front_);
+      for (int f = unit_last_[unit]; f >= unit_first_[unit]; --f) backward(f, y, scratch, pool);
+    });
+  }
 }
 
 }  // namespace brachium::fem
