@@ -21,6 +21,21 @@ ContactSurface contact_surface(const MuscleReading& m, const RigidShape& shape, 
   return ContactSurface(m.discretisation, "side", shape, options);
 }
 
+/// Calls `f` with each contact, its surface, and its multipliers (none: penalty alone).
+template <class F>
+void for_each_contact(const MuscleReading& m, const Configuration& now, F&& f) {
+  Eigen::Index first = 0;
+  for (const Contact& contact : m.problem.contacts) {
+    const ContactSurface surface =
+        contact_surface(m, contact.body, contact.penalty_pa_per_m, contact.smoothing_m);
+    Eigen::VectorXd multiplier;
+    if (now.contact_multiplier.size() > 0)
+      multiplier = now.contact_multiplier.segment(first, surface.point_count());
+    first += surface.point_count();
+    f(contact, surface, multiplier);
+  }
+}
+
 void read_stretch(const MuscleReading& m, const Configuration& configuration, SolvedMuscle& state) {
   const PointFields fields = point_fields(m.problem, m.discretisation, configuration);
   state.stretch_min = fields.fibre_stretch.minCoeff();
@@ -53,18 +68,18 @@ double moment_by_stress(const MuscleReading& m, const Configuration& now) {
   // Off the faces between cells, where a plane would cut along edges.
   const SectionFigures cut = section(
       m.discretisation, now, plane + 1e-3 * m.body.belly_length_m / m.body.belly_cells * along, along);
-  for (const Contact& contact : m.problem.contacts) {
-    const ContactPoints points =
-        contact_surface(m, contact.body, contact.penalty_pa_per_m, contact.smoothing_m)
-            .points(now.dofs, {}, {});
-    for (Eigen::Index i = 0; i < points.pressure_pa.size(); ++i) {
-      const Eigen::Vector3d x = points.position_m.col(i);
-      if (!(points.pressure_pa[i] > 0.0) || (x - cut.centroid_m).dot(cut.normal) < 0.0) continue;
-      const Eigen::Vector3d f =
-          points.pressure_pa[i] * points.area_m2[i] * distance(contact.body, x).gradient;
-      moment += (x - m.hinge.centre_m).cross(f);
-    }
-  }
+  for_each_contact(m, now,
+                   [&](const Contact& contact, const ContactSurface& surface, const auto& multiplier) {
+                     const ContactPoints points = surface.points(now.dofs, {}, multiplier);
+                     for (Eigen::Index i = 0; i < points.pressure_pa.size(); ++i) {
+                       const Eigen::Vector3d x = points.position_m.col(i);
+                       if (!(points.pressure_pa[i] > 0.0) || (x - cut.centroid_m).dot(cut.normal) < 0.0)
+                         continue;
+                       const Eigen::Vector3d f =
+                           points.pressure_pa[i] * points.area_m2[i] * distance(contact.body, x).gradient;
+                       moment += (x - m.hinge.centre_m).cross(f);
+                     }
+                   });
   return m.hinge.axis.dot(moment);
 }
 
@@ -120,14 +135,15 @@ void read_state(const MuscleReading& m, const AcceptedState& accepted, SolvedMus
 void read_contacts(const MuscleReading& m, const std::vector<Bone>& left_out, const AcceptedState& accepted,
                    SolvedMuscle& state) {
   const Eigen::VectorXd& dofs = accepted.state.configuration.dofs;
-  for (const Contact& contact : m.problem.contacts) {
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(dofs.size());
-    const ContactSums sums = contact_surface(m, contact.body, contact.penalty_pa_per_m, contact.smoothing_m)
-                                 .add_force(dofs, {}, {}, force);
-    state.energy_j += sums.energy_j;
-    state.contacts.push_back({contact.name, sums.force_n.norm(), sums.force_n, sums.greatest_penetration_m,
-                              sums.greatest_pressure_pa, sums.area_m2});
-  }
+  for_each_contact(
+      m, accepted.state.configuration,
+      [&](const Contact& contact, const ContactSurface& surface, const auto& multiplier) {
+        Eigen::VectorXd force = Eigen::VectorXd::Zero(dofs.size());
+        const ContactSums sums = surface.add_force(dofs, {}, multiplier, force);
+        state.energy_j += sums.energy_j;
+        state.contacts.push_back({contact.name, sums.force_n.norm(), sums.force_n,
+                                  sums.greatest_penetration_m, sums.greatest_pressure_pa, sums.area_m2});
+      });
   for (const Bone& bone : left_out) {
     state.least_gap_left_out_m =
         std::min(state.least_gap_left_out_m, contact_surface(m, bone.shape, 1.0, 0.0).least_gap_m(dofs, {}));

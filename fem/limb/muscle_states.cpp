@@ -44,7 +44,8 @@ MuscleStates::MuscleStates(MuscleBody body, AngleRange range, Hinge hinge, std::
     contact.surface = "side";
     contact.body = bone.shape;
     contact.penalty_pa_per_m = penalty_;
-    contact.smoothing_m = options_.contact_smoothing_m;
+    contact.penetration_tolerance_m = options_.contact_tolerance_m;
+    contact.smoothing_m = options_.contact_tolerance_m > 0.0 ? 0.0 : options_.contact_smoothing_m;
     built_.problem.contacts.push_back(contact);
   }
   known_.push_back(in_situ(like));
@@ -73,14 +74,30 @@ MuscleStates::Known MuscleStates::in_situ(const MuscleStates* like) {
   return reference;
 }
 
+/// Direction across `line` in which the nearest bone that is modelled is left.
+Eigen::Vector3d MuscleStates::away_from_bones(const Eigen::Vector3d& from,
+                                              const Eigen::Vector3d& line) const {
+  constexpr int points = 50;
+  Distance nearest{std::numeric_limits<double>::infinity()};
+  for (const Bone& bone : bones_) {
+    for (int i = 0; i <= points; ++i) {
+      const Distance d = distance(bone.shape, from + i / static_cast<double>(points) * line);
+      if (d.value < nearest.value) nearest = d;
+    }
+  }
+  const Eigen::Vector3d across = nearest.gradient - line.dot(nearest.gradient) / line.squaredNorm() * line;
+  if (across.norm() > 1e-6) return across.normalized();
+  return Eigen::Vector3d::UnitX() * (body_.cable.anterior ? 1.0 : -1.0);
+}
+
 /// Stretched evenly to its in-situ length, at its own volume, and bowed aside as far as bones ask for.
 SolveState MuscleStates::stretched(const Phase& phase) const {
   const auto& origin = std::get<GuidedMotion>(built_.problem.conditions[0].kind);
   const auto& insertion = std::get<GuidedMotion>(built_.problem.conditions[1].kind);
   const Eigen::Vector3d along = (insertion.centre_m - origin.centre_m).normalized();
-  const Eigen::Vector3d aside = Eigen::Vector3d::UnitX() * (body_.cable.anterior ? 1.0 : -1.0);
   const Eigen::Vector3d place = guided_place(origin, 1.0).place_m;
   const double s = body_.pre_stretch, thinner = 1.0 / std::sqrt(s);
+  const Eigen::Vector3d aside = away_from_bones(place, s * body_.stress_free_length_m() * along);
   SolveState state;
   state.configuration.activation =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(built_.problem.mesh->regions.size()));

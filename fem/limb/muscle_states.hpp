@@ -80,7 +80,8 @@ struct SolvedMuscleOptions {
   SolveOptions solve = one_thread();  ///< states are solved side by side rather than one in parallel
   double step_rad = 0.2, step_activation = 0.34;  ///< load steps to begin with
   double contact_penalty_pa_per_m = 0.0;          ///< 0: 30 (c1 + c2) over the mean size of a cell
-  double contact_smoothing_m = 2e-4;
+  double contact_smoothing_m = 2e-4;              ///< of the penalty; none with a tolerance
+  double contact_tolerance_m = 0.0;               ///< greatest penetration; 0: whatever the penalty leaves
   bool slopes = true;
   double touch_margin_norm = 0.3;  ///< bones farther than this share of the greatest radius are left out
 };
@@ -135,6 +136,7 @@ class MuscleStates {
   Phase phase_to(double q, double activation) const;
   Known in_situ(const MuscleStates* like);
   SolveState stretched(const Phase& phase) const;
+  Eigen::Vector3d away_from_bones(const Eigen::Vector3d& from, const Eigen::Vector3d& line) const;
   void impose_ends(const Phase& phase, SolveState& state) const;
   SolveState adapted(const MuscleStates& other, const Known& known, const Phase& phase) const;
   const Known* find(double q, double activation) const;
