@@ -50,7 +50,7 @@ TEST(LimbScene, OfTheShippedFileHasItsBonesMusclesAndLoadInSI) {
   EXPECT_TRUE(limb.muscle("biceps").flexor);
   EXPECT_FALSE(limb.muscle("triceps").flexor);
   EXPECT_EQ(biceps.belly_cells, 4);
-  EXPECT_NEAR(biceps.cable.offset_rad, -16.0 * degree, 1e-15);
+  EXPECT_NEAR(biceps.cable.offset_rad, -11.0 * degree, 1e-15);
   EXPECT_EQ(biceps.reference_rad, limb.range.upper_rad) << "a flexor is shortest in full flexion";
   EXPECT_EQ(limb.muscle("triceps").body.reference_rad, limb.range.lower_rad);
   EXPECT_FALSE(limb.muscle("triceps").body.cable.anterior);
@@ -131,7 +131,7 @@ TEST(LimbScene, MeshesTendonsInTheMuscleTendonComplexOnly) {
 }
 
 TEST(LimbScene, TellsEveryMistakeAtOnceWithItsPlace) {
-  std::string text = replaced(shipped_text(), "radius_mm = 37.8", "radius_mm = -37.8");
+  std::string text = replaced(shipped_text(), "radius_mm = 35.7", "radius_mm = -35.7");
   text = replaced(text, "action = \"extensor\"", "action = \"extender\"");
   text = replaced(text, "standoff_mm = 6.0", "stand_off_mm = 6.0");
   text = replaced(text, "segment = \"forearm\"", "segment = \"forarm\"");
@@ -139,7 +139,7 @@ TEST(LimbScene, TellsEveryMistakeAtOnceWithItsPlace) {
   const std::string said = mistakes(text);
   EXPECT_THAT(
       said,
-      HasSubstr("error[out-of-range]: `radius_mm` must be greater than 0, not -37.8\n  --> limb.toml:"));
+      HasSubstr("error[out-of-range]: `radius_mm` must be greater than 0, not -35.7\n  --> limb.toml:"));
   EXPECT_THAT(said, HasSubstr("error[unknown-value]: muscle `triceps` cannot be a `extender`\n"));
   EXPECT_THAT(said, HasSubstr("did you mean `extensor`?"));
   EXPECT_THAT(said, HasSubstr("`stand_off_mm`"));
