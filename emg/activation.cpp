@@ -15,9 +15,10 @@
 namespace brachium::emg {
 namespace {
 
-constexpr std::array<std::pair<ActivationForm, const char*>, 3> forms{{{ActivationForm::continuous, "continuous"},
-                                                                      {ActivationForm::recursive, "recursive"},
-                                                                      {ActivationForm::first_order, "first_order"}}};
+constexpr std::array<std::pair<ActivationForm, const char*>, 3> forms{
+    {{ActivationForm::continuous, "continuous"},
+     {ActivationForm::recursive, "recursive"},
+     {ActivationForm::first_order, "first_order"}}};
 constexpr std::array<std::pair<StartUp, const char*>, 3> start_ups{
     {{StartUp::steady_state, "steady_state"}, {StartUp::rest, "rest"}, {StartUp::ceinms, "ceinms"}}};
 
@@ -36,8 +37,8 @@ void check_delay_and_shape(std::vector<data::Diagnostic>& list, const Activation
   }
   const ShapeRange range = shape_range(model.nonlinearity);
   if (!(shape >= range.lower && shape <= range.upper)) {
-    add(list, fmt::format("`shape`{} = {} is outside [{}, {}], the range of the {} nonlinearity", of_muscle(muscle),
-                          shape, range.lower, range.upper, to_string(model.nonlinearity)));
+    add(list, fmt::format("`shape`{} = {} is outside [{}, {}], the range of the {} nonlinearity",
+                          of_muscle(muscle), shape, range.lower, range.upper, to_string(model.nonlinearity)));
   }
   if (model.start_up == StartUp::ceinms && model.form != ActivationForm::recursive) {
     add(list, "start-up `ceinms` belongs to the `recursive` form only");
@@ -84,8 +85,8 @@ void check_samples(std::span<const double> e, double rate_hz) {
   if (zero == 0.0) return;
   for (std::size_t k = 0; k < e.size(); ++k) {
     if (!std::isfinite(e[k])) {
-      throw data::InputError("not-finite", fmt::format("the excitation is `{}` at sample {} ({:.6g} s)", e[k], k,
-                                                       static_cast<double>(k) / rate_hz));
+      throw data::InputError("not-finite", fmt::format("the excitation is `{}` at sample {} ({:.6g} s)", e[k],
+                                                       k, static_cast<double>(k) / rate_hz));
     }
   }
 }
@@ -97,15 +98,16 @@ void check_time_constants(const data::ActivationParameters& p, double rate_hz) {
                                     std::pair{"time_constant_2_s", p.time_constant_2_s}}) {
     const double ratio = value * rate_hz;
     if (!(ratio >= 1e-3 && ratio <= 1e7)) {
-      add(list, fmt::format("`{}` = {} s must lie between 1e-3 and 1e7 sample periods at {} Hz", name, value, rate_hz));
+      add(list, fmt::format("`{}` = {} s must lie between 1e-3 and 1e7 sample periods at {} Hz", name, value,
+                            rate_hz));
     }
   }
   raise(std::move(list));
 }
 
 RecursionParameters as_recursion(const data::ActivationParameters& p, double rate_hz) {
-  return {recursion_coefficient(p.time_constant_1_s, rate_hz), recursion_coefficient(p.time_constant_2_s, rate_hz),
-          p.delay_s, p.shape, rate_hz};
+  return {recursion_coefficient(p.time_constant_1_s, rate_hz),
+          recursion_coefficient(p.time_constant_2_s, rate_hz), p.delay_s, p.shape, rate_hz};
 }
 
 void scale(std::span<double> values, double factor) {
@@ -113,7 +115,8 @@ void scale(std::span<double> values, double factor) {
 }
 
 // u in `activation` and du/dp in the tangents become a and da/dp.
-void apply_nonlinearity(Nonlinearity kind, double shape, std::span<double> activation, const ActivationTangents* t) {
+void apply_nonlinearity(Nonlinearity kind, double shape, std::span<double> activation,
+                        const ActivationTangents* t) {
   const ShapedNonlinearity nonlinearity(kind, shape);
   if (!t) {
     if (kind == Nonlinearity::none) return;
@@ -143,12 +146,13 @@ void finish_linear(const ActivationModel& model, double shape, double gain, std:
   apply_nonlinearity(model.nonlinearity, shape, activation, t);
 }
 
-void run(const ActivationModel& model, const data::ActivationParameters& p, std::span<const double> e, double rate_hz,
-         std::span<double> activation, double gain, const ActivationTangents* t) {
+void run(const ActivationModel& model, const data::ActivationParameters& p, std::span<const double> e,
+         double rate_hz, std::span<double> activation, double gain, const ActivationTangents* t) {
   raise(mistakes(model, p, {}));
   check_samples(e, rate_hz);
   check_time_constants(p, rate_hz);
-  const ResponseTangents response = t ? ResponseTangents{t->delay, t->dynamics_1, t->dynamics_2} : ResponseTangents{};
+  const ResponseTangents response =
+      t ? ResponseTangents{t->delay, t->dynamics_1, t->dynamics_2} : ResponseTangents{};
   switch (model.form) {
     case ActivationForm::continuous:
       continuous_response(model.start_up, p, e, rate_hz, activation, response);
@@ -165,8 +169,9 @@ void run(const ActivationModel& model, const data::ActivationParameters& p, std:
     case ActivationForm::first_order: {
       const double lowest = e.empty() ? 0.0 : gain * *std::min_element(e.begin(), e.end());
       if (!(lowest > -0.3)) {
-        throw data::InputError("out-of-range",
-                               fmt::format("the excitation falls to `{}`; the first-order form needs > -0.3", lowest));
+        throw data::InputError(
+            "out-of-range",
+            fmt::format("the excitation falls to `{}`; the first-order form needs > -0.3", lowest));
       }
       first_order_response(model.start_up, p, e, rate_hz, gain, activation, t ? t->gain : std::span<double>{},
                            response);
@@ -179,14 +184,15 @@ void run(const ActivationModel& model, const data::ActivationParameters& p, std:
 
 void check_rate(const RecursionParameters& p, double rate_hz) {
   if (!(std::abs(p.rate_hz - rate_hz) <= 1e-9 * rate_hz)) {
-    throw data::InputError("rate-mismatch",
-                           fmt::format("`g1`, `g2` were given for {} Hz, the excitation has {} Hz", p.rate_hz, rate_hz),
-                           "resample the excitation, or give time constants, which do not depend on the rate");
+    throw data::InputError(
+        "rate-mismatch",
+        fmt::format("`g1`, `g2` were given for {} Hz, the excitation has {} Hz", p.rate_hz, rate_hz),
+        "resample the excitation, or give time constants, which do not depend on the rate");
   }
 }
 
-void run(const ActivationModel& model, const RecursionParameters& p, std::span<const double> e, double rate_hz,
-         std::span<double> activation, double gain, const ActivationTangents* t) {
+void run(const ActivationModel& model, const RecursionParameters& p, std::span<const double> e,
+         double rate_hz, std::span<double> activation, double gain, const ActivationTangents* t) {
   raise(mistakes(model, p, {}));
   check_samples(e, rate_hz);
   check_rate(p, rate_hz);
@@ -197,8 +203,12 @@ void run(const ActivationModel& model, const RecursionParameters& p, std::span<c
 
 }  // namespace
 
-std::string to_string(ActivationForm form) { return name_of(forms, form); }
-std::string to_string(StartUp start_up) { return name_of(start_ups, start_up); }
+std::string to_string(ActivationForm form) {
+  return name_of(forms, form);
+}
+std::string to_string(StartUp start_up) {
+  return name_of(start_ups, start_up);
+}
 ActivationForm parse_activation_form(const std::string& name) {
   return parse_name(forms, name, "unknown-activation-form", "a form of activation dynamics");
 }
@@ -222,8 +232,8 @@ void activate(const ActivationModel& model, const data::ActivationParameters& pa
   run(model, parameters, excitation, rate_hz, activation, gain, nullptr);
 }
 
-void activate(const ActivationModel& model, const RecursionParameters& parameters, std::span<const double> excitation,
-              double rate_hz, std::span<double> activation, double gain) {
+void activate(const ActivationModel& model, const RecursionParameters& parameters,
+              std::span<const double> excitation, double rate_hz, std::span<double> activation, double gain) {
   run(model, parameters, excitation, rate_hz, activation, gain, nullptr);
 }
 
@@ -289,7 +299,8 @@ void check_parameters(const ActivationModel& model, const data::ActivationParame
   raise(mistakes(model, parameters, muscle));
 }
 
-void check_parameters(const ActivationModel& model, const RecursionParameters& parameters, const std::string& muscle) {
+void check_parameters(const ActivationModel& model, const RecursionParameters& parameters,
+                      const std::string& muscle) {
   raise(mistakes(model, parameters, muscle));
 }
 

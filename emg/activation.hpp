@@ -35,14 +35,15 @@ enum class ActivationForm { continuous, recursive, first_order };
 enum class StartUp {
   steady_state,  ///< e = e_0 for ever, and u has settled to it (the default)
   rest,          ///< e = 0, u = 0
-  ceinms         ///< recursive form only: u = 0 before the first sample, and at the third sample both past values of
-                 ///< u are set to the mean of the first two (delayed) excitations, as CEINMS does
+  ceinms  ///< recursive form only: u = 0 before the first sample, and at the third sample both past values of
+          ///< u are set to the mean of the first two (delayed) excitations, as CEINMS does
 };
 
 std::string to_string(ActivationForm form);
 std::string to_string(StartUp start_up);
-ActivationForm parse_activation_form(const std::string& name);  ///< throws InputError("unknown-activation-form")
-StartUp parse_start_up(const std::string& name);                ///< throws InputError("unknown-start-up")
+ActivationForm parse_activation_form(
+    const std::string& name);                     ///< throws InputError("unknown-activation-form")
+StartUp parse_start_up(const std::string& name);  ///< throws InputError("unknown-start-up")
 
 struct ActivationModel {
   ActivationForm form = ActivationForm::continuous;
@@ -76,10 +77,12 @@ struct ActivationTangents {
 /// RecursionParameters used at another rate than their own; ("not-finite") for NaN or Inf samples.
 /// `recursive` with time constants uses g = -exp(-dt/τ).
 void activate(const ActivationModel& model, const data::ActivationParameters& parameters,
-              std::span<const double> excitation, double rate_hz, std::span<double> activation, double gain = 1.0);
+              std::span<const double> excitation, double rate_hz, std::span<double> activation,
+              double gain = 1.0);
 /// The recursive form by its own coefficients; model.form must be recursive.
 void activate(const ActivationModel& model, const RecursionParameters& parameters,
-              std::span<const double> excitation, double rate_hz, std::span<double> activation, double gain = 1.0);
+              std::span<const double> excitation, double rate_hz, std::span<double> activation,
+              double gain = 1.0);
 
 /// As activate, and the exact derivatives of a. Derivatives with respect to the delay are one-sided (towards a
 /// longer delay) where the recursive form meets a kink of the interpolated excitation, that is at whole samples;
@@ -108,10 +111,11 @@ double equivalent_continuous_delay(double recursion_delay_s, double rate_hz);
 
 /// For use inside an ODE solver: state x = (x1, x2), x1' = (γ e(t - d) - x1)/τ1, x2' = (x1 - x2)/τ2, u = x2.
 /// The caller supplies the delayed excitation.
-std::array<double, 2> neural_state_rate(const data::ActivationParameters& parameters, double delayed_excitation,
-                                        const std::array<double, 2>& state);
+std::array<double, 2> neural_state_rate(const data::ActivationParameters& parameters,
+                                        double delayed_excitation, const std::array<double, 2>& state);
 /// Rate of Thelen's first-order activation.
-double first_order_rate(const data::ActivationParameters& parameters, double delayed_excitation, double activation);
+double first_order_rate(const data::ActivationParameters& parameters, double delayed_excitation,
+                        double activation);
 
 /// Throws InputError listing every parameter outside its domain, with the muscle's name in the message.
 void check_parameters(const ActivationModel& model, const data::ActivationParameters& parameters,

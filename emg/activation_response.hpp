@@ -22,15 +22,16 @@ struct SplitDelay {
 };
 SplitDelay split_delay(double delay_s, double rate_hz);
 
-void continuous_response(StartUp start_up, const data::ActivationParameters& parameters, std::span<const double> e,
-                         double rate_hz, std::span<double> u, const ResponseTangents& tangents);
+void continuous_response(StartUp start_up, const data::ActivationParameters& parameters,
+                         std::span<const double> e, double rate_hz, std::span<double> u,
+                         const ResponseTangents& tangents);
 
 void recursive_response(StartUp start_up, const RecursionParameters& parameters, std::span<const double> e,
                         std::span<double> u, const ResponseTangents& tangents);
 
 /// Not linear in e, hence with the gain inside; du_dgain is empty or as long as the excitation.
-void first_order_response(StartUp start_up, const data::ActivationParameters& parameters, std::span<const double> e,
-                          double rate_hz, double gain, std::span<double> u, std::span<double> du_dgain,
-                          const ResponseTangents& tangents);
+void first_order_response(StartUp start_up, const data::ActivationParameters& parameters,
+                          std::span<const double> e, double rate_hz, double gain, std::span<double> u,
+                          std::span<double> du_dgain, const ResponseTangents& tangents);
 
 }  // namespace brachium::emg

@@ -20,7 +20,8 @@ using Complex = std::complex<double>;
 // numerator n2 s^2 + n1 s + n0.
 Biquad bilinear(double n2, double n1, double n0, double c1, double c0) {
   const double a0 = 1.0 + c1 + c0;
-  return {(n2 + n1 + n0) / a0, 2.0 * (n0 - n2) / a0, (n2 - n1 + n0) / a0, 2.0 * (c0 - 1.0) / a0, (1.0 - c1 + c0) / a0};
+  return {(n2 + n1 + n0) / a0, 2.0 * (n0 - n2) / a0, (n2 - n1 + n0) / a0, 2.0 * (c0 - 1.0) / a0,
+          (1.0 - c1 + c0) / a0};
 }
 
 // First order: (n1 s + n0)/(s + c)
@@ -32,7 +33,8 @@ Biquad bilinear(double n1, double n0, double c) {
 // Left-half-plane poles of the prototype |H|^2 = 1/(1 + Ω^(2n)) with positive imaginary part.
 std::vector<Complex> prototype_pairs(int order) {
   std::vector<Complex> poles;
-  for (int k = 0; k < order / 2; ++k) poles.push_back(std::polar(1.0, pi * (2.0 * k + order + 1.0) / (2.0 * order)));
+  for (int k = 0; k < order / 2; ++k)
+    poles.push_back(std::polar(1.0, pi * (2.0 * k + order + 1.0) / (2.0 * order)));
   return poles;
 }
 
@@ -137,8 +139,9 @@ void check_edge(std::vector<data::Diagnostic>& list, const char* name, double ed
   if (!(edge > 0.0) || !std::isfinite(edge)) {
     add("out-of-range", fmt::format("`{}` = {} Hz must be > 0", name, edge));
   } else if (!(edge < 0.5 * rate_hz)) {
-    add("cutoff-above-nyquist", fmt::format("`{}` = {} Hz is not below {} Hz, half the sampling rate of {} Hz", name,
-                                            edge, 0.5 * rate_hz, rate_hz));
+    add("cutoff-above-nyquist",
+        fmt::format("`{}` = {} Hz is not below {} Hz, half the sampling rate of {} Hz", name, edge,
+                    0.5 * rate_hz, rate_hz));
   }
 }
 
@@ -154,8 +157,12 @@ void check(const FilterSpec& spec, double rate_hz) {
     add(fmt::format("`order` = {} must lie between 1 and 10", spec.order));
   }
   switch (spec.kind) {
-    case FilterKind::low_pass: check_edge(list, "high_hz", spec.high_hz, rate_hz); break;
-    case FilterKind::high_pass: check_edge(list, "low_hz", spec.low_hz, rate_hz); break;
+    case FilterKind::low_pass:
+      check_edge(list, "high_hz", spec.high_hz, rate_hz);
+      break;
+    case FilterKind::high_pass:
+      check_edge(list, "low_hz", spec.low_hz, rate_hz);
+      break;
     case FilterKind::band_pass:
       check_edge(list, "low_hz", spec.low_hz, rate_hz);
       check_edge(list, "high_hz", spec.high_hz, rate_hz);
@@ -188,7 +195,8 @@ std::vector<double> scan_grid(std::span<const DesignedFilter> cascade) {
   for (const DesignedFilter& filter : cascade) {
     if (filter.spec.kind != FilterKind::notch) continue;
     for (int k = 1; k <= filter.spec.harmonics; ++k) {
-      for (const double offset : {-0.7, 0.0, 0.7}) grid.push_back(k * filter.spec.line_hz + offset * filter.spec.width_hz);
+      for (const double offset : {-0.7, 0.0, 0.7})
+        grid.push_back(k * filter.spec.line_hz + offset * filter.spec.width_hz);
     }
   }
   std::erase_if(grid, [&](double f) { return !(f > 0.0 && f < nyquist); });
@@ -219,10 +227,13 @@ std::vector<double> half_power_edges(std::span<const DesignedFilter> cascade) {
 // Where a causal filter's delay is quoted: inside its pass band.
 double delay_frequency(const FilterSpec& spec, double rate_hz) {
   switch (spec.kind) {
-    case FilterKind::high_pass: return std::min(2.0 * spec.low_hz, 0.5 * rate_hz);
-    case FilterKind::band_pass: return std::sqrt(spec.low_hz * spec.high_hz);
+    case FilterKind::high_pass:
+      return std::min(2.0 * spec.low_hz, 0.5 * rate_hz);
+    case FilterKind::band_pass:
+      return std::sqrt(spec.low_hz * spec.high_hz);
     case FilterKind::low_pass:
-    case FilterKind::notch: break;
+    case FilterKind::notch:
+      break;
   }
   return 0.0;
 }
@@ -262,8 +273,12 @@ DesignedFilter design(const FilterSpec& spec, double rate_hz) {
                        ? 1.0
                        : std::pow(std::pow(2.0, 1.0 / spec.passes()) - 1.0, 1.0 / (2.0 * n));
   switch (spec.kind) {
-    case FilterKind::low_pass: filter.sections = low_pass_sections(n, prewarp(spec.high_hz) / C); break;
-    case FilterKind::high_pass: filter.sections = high_pass_sections(n, prewarp(spec.low_hz) * C); break;
+    case FilterKind::low_pass:
+      filter.sections = low_pass_sections(n, prewarp(spec.high_hz) / C);
+      break;
+    case FilterKind::high_pass:
+      filter.sections = high_pass_sections(n, prewarp(spec.low_hz) * C);
+      break;
     case FilterKind::band_pass: {
       const double low = prewarp(spec.low_hz), high = prewarp(spec.high_hz);
       filter.sections = band_pass_sections(n, (high - low) / C, std::sqrt(low * high));
@@ -315,21 +330,23 @@ FilterReport describe(const DesignedFilter& filter) {
 
   const std::string phase = spec.phase == Phase::zero_lag
                                 ? "zero lag"
-                                : fmt::format("causal, group delay {:.4g} ms at {:.4g} Hz", 1e3 * report.group_delay_s,
-                                              report.delay_at_hz);
+                                : fmt::format("causal, group delay {:.4g} ms at {:.4g} Hz",
+                                              1e3 * report.group_delay_s, report.delay_at_hz);
   if (spec.kind == FilterKind::notch) {
     std::string centres;
     for (std::size_t k = 1; k <= filter.sections.size(); ++k) {
       centres += fmt::format("{}{:.6g}", k == 1 ? "" : ", ", static_cast<double>(k) * spec.line_hz);
     }
-    report.description = fmt::format("notch at {} Hz, {}, -3 dB at {} Hz", centres, phase, list_of(report.edges_hz));
+    report.description =
+        fmt::format("notch at {} Hz, {}, -3 dB at {} Hz", centres, phase, list_of(report.edges_hz));
     if (!filter.left_out_hz.empty()) {
-      report.description += fmt::format("; left out, too close to half the sampling rate: {} Hz",
-                                        list_of(filter.left_out_hz));
+      report.description +=
+          fmt::format("; left out, too close to half the sampling rate: {} Hz", list_of(filter.left_out_hz));
     }
   } else {
-    report.description = fmt::format("{} Butterworth, effective order {}, {}, -3 dB after all passes at {} Hz",
-                                     to_string(spec.kind), report.effective_order, phase, list_of(report.edges_hz));
+    report.description =
+        fmt::format("{} Butterworth, effective order {}, {}, -3 dB after all passes at {} Hz",
+                    to_string(spec.kind), report.effective_order, phase, list_of(report.edges_hz));
   }
   return report;
 }

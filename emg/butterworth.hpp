@@ -46,8 +46,9 @@ struct FilterSpec {
   double low_hz = 0.0;    ///< lower edge: high_pass, band_pass
   double high_hz = 0.0;   ///< upper edge: low_pass, band_pass
   double line_hz = 50.0;  ///< notch: centre of the first notch
-  int harmonics = 1;      ///< notch: number of notches, at line_hz, 2 line_hz, ...; those at or above 98 % of Nyquist
-                          ///< are left out and said so
+  int harmonics =
+      1;  ///< notch: number of notches, at line_hz, 2 line_hz, ...; those at or above 98 % of Nyquist
+          ///< are left out and said so
   double width_hz = 2.0;  ///< notch: distance of its -3 dB edges
   Phase phase = Phase::zero_lag;
   CutoffConvention cutoff = CutoffConvention::after_all_passes;
@@ -64,8 +65,8 @@ struct FilterSpec {
 struct DesignedFilter {
   FilterSpec spec;
   double rate_hz = 0.0;
-  std::vector<Biquad> sections;        ///< of one pass
-  std::vector<double> left_out_hz;     ///< notches too close to Nyquist
+  std::vector<Biquad> sections;     ///< of one pass
+  std::vector<double> left_out_hz;  ///< notches too close to Nyquist
 
   /// Complex gain of one pass at a frequency, and |gain|^passes.
   std::complex<double> pass_response(double frequency_hz) const;
@@ -80,13 +81,15 @@ double gain(std::span<const DesignedFilter> cascade, double frequency_hz);
 
 /// What is reported of a filter or a cascade.
 struct FilterReport {
-  std::string description;       ///< "low-pass Butterworth, effective order 4, zero lag, -3 dB at 6 Hz"
-  int effective_order = 0;       ///< slope far outside the pass band [20 dB/decade], n x passes; notch: 2 x passes
-  std::vector<double> edges_hz;  ///< every frequency where the gain crosses 1/sqrt(2) after all passes, ascending
-  double group_delay_s = 0.0;    ///< causal: inside the pass band, at delay_at_hz; zero lag: 0
-  double delay_at_hz = 0.0;      ///< low-pass and notch 0, band-pass the centre sqrt(low high), high-pass 2 low
-  double transient_s = 0.0;      ///< time after which what lies beyond an edge makes less than transient_level of the
-                                 ///< output's RMS: the tail's share of the impulse response's energy is its square
+  std::string description;  ///< "low-pass Butterworth, effective order 4, zero lag, -3 dB at 6 Hz"
+  int effective_order = 0;  ///< slope far outside the pass band [20 dB/decade], n x passes; notch: 2 x passes
+  std::vector<double>
+      edges_hz;  ///< every frequency where the gain crosses 1/sqrt(2) after all passes, ascending
+  double group_delay_s = 0.0;  ///< causal: inside the pass band, at delay_at_hz; zero lag: 0
+  double delay_at_hz = 0.0;    ///< low-pass and notch 0, band-pass the centre sqrt(low high), high-pass 2 low
+  double transient_s =
+      0.0;  ///< time after which what lies beyond an edge makes less than transient_level of the
+            ///< output's RMS: the tail's share of the impulse response's energy is its square
 };
 inline constexpr double transient_level = 1e-3;
 

@@ -18,18 +18,19 @@ void check_alike(const data::TrialInfo& trial, std::span<const std::size_t> sign
   for (const std::size_t s : signals) {
     const data::SignalInfo& info = trial.signals.at(s);
     if (info.rate_hz == first.rate_hz && info.count == first.count) continue;
-    list.push_back({data::Severity::error, "rate-mismatch",
-                    fmt::format("signals `{}` and `{}` of trial `{}` differ: {} samples at {} Hz, {} samples at {} Hz",
-                                first.name, info.name, trial.name, first.count, first.rate_hz, info.count, info.rate_hz),
-                    std::nullopt, "condition them in two stages"});
+    list.push_back(
+        {data::Severity::error, "rate-mismatch",
+         fmt::format("signals `{}` and `{}` of trial `{}` differ: {} samples at {} Hz, {} samples at {} Hz",
+                     first.name, info.name, trial.name, first.count, first.rate_hz, info.count, info.rate_hz),
+         std::nullopt, "condition them in two stages"});
   }
   if (!list.empty()) throw data::InputError(std::move(list));
 }
 
 }  // namespace
 
-StreamResult condition_trial(const ConditioningOptions& options, const data::SessionSource& source, std::size_t trial,
-                             std::span<const std::size_t> signals, data::SessionSink& sink,
+StreamResult condition_trial(const ConditioningOptions& options, const data::SessionSource& source,
+                             std::size_t trial, std::span<const std::size_t> signals, data::SessionSink& sink,
                              std::size_t memory_budget_bytes) {
   StreamResult result;
   if (signals.empty()) return result;

@@ -17,7 +17,8 @@ void run(StartUp start_up, const data::ActivationParameters& p, std::span<const 
   const auto [whole, fraction] = split_delay(p.delay_s, rate_hz);
   const double dt = 1.0 / rate_hz;
   const SecondOrderStep step = second_order_step(p.time_constant_1_s, p.time_constant_2_s, dt);
-  const SecondOrderStep look = second_order_step(p.time_constant_1_s, p.time_constant_2_s, (1.0 - fraction) * dt);
+  const SecondOrderStep look =
+      second_order_step(p.time_constant_1_s, p.time_constant_2_s, (1.0 - fraction) * dt);
   const auto& S = step.transition;
   const auto& L = look.transition;
   const double inverse_tau1 = 1.0 / p.time_constant_1_s;
@@ -27,7 +28,8 @@ void run(StartUp start_up, const data::ActivationParameters& p, std::span<const 
   const std::size_t first = std::min(n, whole + 1);  // until then t_k - d <= 0
   std::fill(u.begin(), u.begin() + static_cast<std::ptrdiff_t>(first), before);
   for (const std::span<double>& tangent : {tangents.delay, tangents.dynamics_1, tangents.dynamics_2}) {
-    if (!tangent.empty()) std::fill(tangent.begin(), tangent.begin() + static_cast<std::ptrdiff_t>(first), 0.0);
+    if (!tangent.empty())
+      std::fill(tangent.begin(), tangent.begin() + static_cast<std::ptrdiff_t>(first), 0.0);
   }
 
   double x1 = before, x2 = before, w1 = before, w2 = before;
@@ -50,10 +52,10 @@ void run(StartUp start_up, const data::ActivationParameters& p, std::span<const 
                         (look.from_start[3] * e0 + look.from_change[3] * de_look);
       if (!tangents.dynamics_1.empty()) tangents.dynamics_1[k] = -(y2 - v1) * inverse_tau1;
       if (!tangents.dynamics_2.empty()) tangents.dynamics_2[k] = -(y2 - v2) * inverse_tau2;
-      const double next_w1 = S[2][0] * x1 + S[2][1] * x2 + S[2][2] * w1 +
-                             (step.from_start[2] * e0 + step.from_change[2] * de);
-      const double next_w2 = S[3][0] * x1 + S[3][1] * x2 + S[3][3] * w2 +
-                             (step.from_start[3] * e0 + step.from_change[3] * de);
+      const double next_w1 =
+          S[2][0] * x1 + S[2][1] * x2 + S[2][2] * w1 + (step.from_start[2] * e0 + step.from_change[2] * de);
+      const double next_w2 =
+          S[3][0] * x1 + S[3][1] * x2 + S[3][3] * w2 + (step.from_start[3] * e0 + step.from_change[3] * de);
       w1 = next_w1;
       w2 = next_w2;
     }
@@ -65,8 +67,9 @@ void run(StartUp start_up, const data::ActivationParameters& p, std::span<const 
 
 }  // namespace
 
-void continuous_response(StartUp start_up, const data::ActivationParameters& parameters, std::span<const double> e,
-                         double rate_hz, std::span<double> u, const ResponseTangents& tangents) {
+void continuous_response(StartUp start_up, const data::ActivationParameters& parameters,
+                         std::span<const double> e, double rate_hz, std::span<double> u,
+                         const ResponseTangents& tangents) {
   if (tangents.dynamics_1.empty() && tangents.dynamics_2.empty()) {
     run<false>(start_up, parameters, e, rate_hz, u, tangents);
   } else {

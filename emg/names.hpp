@@ -20,7 +20,8 @@ std::string name_of(const Table& table, Value wanted) {
 
 /// Throws InputError(code), "`name` is not <what>", with the nearest name.
 template <class Table>
-auto parse_name(const Table& table, const std::string& name, const std::string& code, const std::string& what) {
+auto parse_name(const Table& table, const std::string& name, const std::string& code,
+                const std::string& what) {
   std::vector<std::string> known;
   for (const auto& [value, n] : table) {
     if (name == n) return value;

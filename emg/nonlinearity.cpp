@@ -14,15 +14,18 @@
 namespace brachium::emg {
 namespace {
 
-constexpr std::array<std::pair<Nonlinearity, const char*>, 3> names{{{Nonlinearity::exponential, "exponential"},
-                                                                    {Nonlinearity::piecewise, "piecewise"},
-                                                                    {Nonlinearity::none, "none"}}};
+constexpr std::array<std::pair<Nonlinearity, const char*>, 3> names{
+    {{Nonlinearity::exponential, "exponential"},
+     {Nonlinearity::piecewise, "piecewise"},
+     {Nonlinearity::none, "none"}}};
 
 // Below this |A| the exponential is evaluated through φ, above it by one expm1 and one product.
 constexpr double small_shape = 1e-3;
 
 // φ(x) = (e^x - 1)/x
-double phi(double x) { return x == 0.0 ? 1.0 : std::expm1(x) / x; }
+double phi(double x) {
+  return x == 0.0 ? 1.0 : std::expm1(x) / x;
+}
 
 // φ'(x) = (e^x - φ(x))/x, by its series Σ n x^(n-1)/(n+1)! where the difference would cancel
 double phi_slope(double x) {
@@ -39,7 +42,8 @@ double phi_slope(double x) {
 std::pair<double, double> node_function(double y) {
   if (y < 0.05) {
     const double y2 = y * y;
-    return {y / 2 + y2 / 12 - y2 * y2 / 720 + y2 * y2 * y2 / 30240, 0.5 + y / 6 - y2 * y / 180 + y2 * y2 * y / 5040};
+    return {y / 2 + y2 / 12 - y2 * y2 / 720 + y2 * y2 * y2 / 30240,
+            0.5 + y / 6 - y2 * y / 180 + y2 * y2 * y / 5040};
   }
   const double e = std::exp(-y);
   const double d = -std::expm1(-y);
@@ -59,16 +63,21 @@ double log_slope(double s) {
 
 }  // namespace
 
-std::string to_string(Nonlinearity nonlinearity) { return name_of(names, nonlinearity); }
+std::string to_string(Nonlinearity nonlinearity) {
+  return name_of(names, nonlinearity);
+}
 Nonlinearity parse_nonlinearity(const std::string& name) {
   return parse_name(names, name, "unknown-nonlinearity", "an activation nonlinearity");
 }
 
 ShapeRange shape_range(Nonlinearity nonlinearity) {
   switch (nonlinearity) {
-    case Nonlinearity::exponential: return {-3.0, 0.0};
-    case Nonlinearity::piecewise: return {0.0, 0.12};
-    case Nonlinearity::none: break;
+    case Nonlinearity::exponential:
+      return {-3.0, 0.0};
+    case Nonlinearity::piecewise:
+      return {0.0, 0.12};
+    case Nonlinearity::none:
+      break;
   }
   return {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
 }
@@ -77,8 +86,8 @@ ShapedNonlinearity::ShapedNonlinearity(Nonlinearity kind, double shape) : kind_(
   const ShapeRange range = shape_range(kind);
   if (!(shape >= range.lower && shape <= range.upper)) {
     throw data::InputError("out-of-range",
-                           fmt::format("`shape` = {} is outside [{}, {}], the range of the {} nonlinearity", shape,
-                                       range.lower, range.upper, to_string(kind)));
+                           fmt::format("`shape` = {} is outside [{}, {}], the range of the {} nonlinearity",
+                                       shape, range.lower, range.upper, to_string(kind)));
   }
   if (kind == Nonlinearity::exponential) prepare_exponential();
   if (kind == Nonlinearity::piecewise) prepare_piecewise();
@@ -99,7 +108,8 @@ void ShapedNonlinearity::prepare_piecewise() {
   const double m = (1.0 - a0) / (1.0 - u0);
   const double excess = (a0 - u0) / ((1.0 - u0) * m * u0);  // a0/(m u0) - 1
 
-  double y = excess;  // h is convex and h - 1 < y: one Newton step overshoots the root, the others come down to it
+  double y =
+      excess;  // h is convex and h - 1 < y: one Newton step overshoots the root, the others come down to it
   for (int i = 0; i < 60; ++i) {
     const auto [value, slope] = node_function(y);
     const double step = (excess - value) / slope;
@@ -130,7 +140,8 @@ double ShapedNonlinearity::operator()(double u) const {
       if (u >= u0_) return m_ * u + (1.0 - m_);
       if (u < 0.0) return slope_at_0_ * u;
       return x_ == 0.0 ? kappa_ * (u / u0_) : kappa_ * std::log1p(x_ * (u / u0_)) / x_;
-    case Nonlinearity::none: break;
+    case Nonlinearity::none:
+      break;
   }
   return u;
 }
@@ -157,7 +168,8 @@ NonlinearityValue ShapedNonlinearity::with_derivatives(double u) const {
       const double dL_dx = w * w * log_slope(s);
       return {(*this)(u), kappa_ * dL_dw / u0_, dkappa_ * L + kappa_ * (dL_dx * dx_ + dL_dw * dw)};
     }
-    case Nonlinearity::none: break;
+    case Nonlinearity::none:
+      break;
   }
   return {u, 1.0, 0.0};
 }

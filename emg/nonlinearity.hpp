@@ -59,8 +59,8 @@ class ShapedNonlinearity {
   Nonlinearity kind_;
   double shape_ = 0.0;
   double phi_ = 1.0, dphi_ = 0.5, inverse_expm1_ = 0.0;  // exponential: φ(A), φ'(A), 1/(e^A - 1)
-  double u0_ = 0.3085, m_ = 1.0, x_ = 0.0, kappa_ = 0.3085, slope_at_0_ = 1.0;          // piecewise
-  double du0_ = 0.0, dm_ = 0.0, dx_ = 0.0, dkappa_ = 0.0, dslope_at_0_ = 0.0;  // their derivatives in A
+  double u0_ = 0.3085, m_ = 1.0, x_ = 0.0, kappa_ = 0.3085, slope_at_0_ = 1.0;  // piecewise
+  double du0_ = 0.0, dm_ = 0.0, dx_ = 0.0, dkappa_ = 0.0, dslope_at_0_ = 0.0;   // their derivatives in A
 };
 
 }  // namespace brachium::emg

@@ -12,16 +12,20 @@
 namespace brachium::emg {
 namespace {
 
-constexpr std::array<std::pair<Normalisation, const char*>, 3> methods{{{Normalisation::mvc, "mvc"},
-                                                                       {Normalisation::trials_maximum, "trials_maximum"},
-                                                                       {Normalisation::none, "none"}}};
+constexpr std::array<std::pair<Normalisation, const char*>, 3> methods{
+    {{Normalisation::mvc, "mvc"},
+     {Normalisation::trials_maximum, "trials_maximum"},
+     {Normalisation::none, "none"}}};
 
 void check(const NormalisationOptions& o) {
   std::vector<data::Diagnostic> list;
   const auto need = [&](bool good, const char* name, double value, const char* must) {
     if (!good || !std::isfinite(value)) {
-      list.push_back({data::Severity::error, "out-of-range", fmt::format("`{}` = {} must be {}", name, value, must),
-                      std::nullopt, {}});
+      list.push_back({data::Severity::error,
+                      "out-of-range",
+                      fmt::format("`{}` = {} must be {}", name, value, must),
+                      std::nullopt,
+                      {}});
     }
   };
   need(o.window_s >= 0.0, "window_s", o.window_s, ">= 0");
@@ -33,7 +37,9 @@ void check(const NormalisationOptions& o) {
 
 }  // namespace
 
-std::string to_string(Normalisation normalisation) { return name_of(methods, normalisation); }
+std::string to_string(Normalisation normalisation) {
+  return name_of(methods, normalisation);
+}
 Normalisation parse_normalisation(const std::string& name) {
   return parse_name(methods, name, "unknown-normalisation", "a method of normalisation");
 }
@@ -76,24 +82,28 @@ void ReferenceSearch::take(const EnvelopeView& envelope) {
   if (options_.method == Normalisation::none) return;
   for (const double x : envelope.samples) {
     if (std::isfinite(x)) continue;
-    throw data::InputError("not-finite", fmt::format("the envelope of channel `{}` in trial `{}` has samples that are "
-                                                     "not finite",
-                                                     best_.channel, envelope.trial));
+    throw data::InputError("not-finite",
+                           fmt::format("the envelope of channel `{}` in trial `{}` has samples that are "
+                                       "not finite",
+                                       best_.channel, envelope.trial));
   }
   WindowMaximum maximum;
   try {
     maximum = moving_window_maximum(envelope.samples, envelope.rate_hz, options_.window_s);
   } catch (const data::InputError&) {
-    throw data::InputError("trial-too-short",
-                           fmt::format("trial `{}` has {:.4g} s of channel `{}`, the normalisation's window is {} s",
-                                       envelope.trial, static_cast<double>(envelope.samples.size()) / envelope.rate_hz,
-                                       best_.channel, options_.window_s),
-                           "use a shorter `window_s`, or leave the trial out");
+    throw data::InputError(
+        "trial-too-short",
+        fmt::format("trial `{}` has {:.4g} s of channel `{}`, the normalisation's window is {} s",
+                    envelope.trial, static_cast<double>(envelope.samples.size()) / envelope.rate_hz,
+                    best_.channel, options_.window_s),
+        "use a shorter `window_s`, or leave the trial out");
   }
   if (best_.trials == 0 || maximum.value > best_.value) {
     best_.value = maximum.value;
     best_.trial = envelope.trial;
-    best_.time_s = envelope.start_time_s + (static_cast<double>(maximum.first) + 0.5 * static_cast<double>(maximum.width - 1)) / envelope.rate_hz;
+    best_.time_s = envelope.start_time_s +
+                   (static_cast<double>(maximum.first) + 0.5 * static_cast<double>(maximum.width - 1)) /
+                       envelope.rate_hz;
   }
   ++best_.trials;
 }
@@ -104,11 +114,14 @@ NormalisationReference ReferenceSearch::finish() const {
     result.value = 1.0;
     result.window_s = 0.0;
     result.diagnostics.push_back(
-        {data::Severity::note, "not-normalised",
-         fmt::format("channel `{}` is not normalised: its gain is fitted in the calibration, where gain and muscle "
-                     "strength are one parameter",
-                     result.channel),
-         std::nullopt, {}});
+        {data::Severity::note,
+         "not-normalised",
+         fmt::format(
+             "channel `{}` is not normalised: its gain is fitted in the calibration, where gain and muscle "
+             "strength are one parameter",
+             result.channel),
+         std::nullopt,
+         {}});
     return result;
   }
   if (result.trials == 0) {
@@ -119,19 +132,21 @@ NormalisationReference ReferenceSearch::finish() const {
                            "name trials of kind mvc, or choose normalisation `trials_maximum` or `none`");
   }
   if (!(result.value > 0.0)) {
-    throw data::InputError("constant-channel",
-                           fmt::format("the largest envelope of channel `{}` is {}: there is nothing to normalise by",
-                                       result.channel, result.value),
-                           "leave the channel out by name");
+    throw data::InputError(
+        "constant-channel",
+        fmt::format("the largest envelope of channel `{}` is {}: there is nothing to normalise by",
+                    result.channel, result.value),
+        "leave the channel out by name");
   }
-  result.expected_bias = emg::expected_bias(options_.window_s, options_.lowpass_hz, options_.plateau_s, result.trials,
-                                            options_.bandwidth_hz);
+  result.expected_bias = emg::expected_bias(options_.window_s, options_.lowpass_hz, options_.plateau_s,
+                                            result.trials, options_.bandwidth_hz);
   if (options_.method == Normalisation::trials_maximum) {
     result.diagnostics.push_back(
         {data::Severity::warning, "normalised-by-trials",
-         fmt::format("channel `{}` is normalised by its maximum over {} trials, not by an MVC: excitations cannot be "
-                     "compared between channels, days or people",
-                     result.channel, result.trials),
+         fmt::format(
+             "channel `{}` is normalised by its maximum over {} trials, not by an MVC: excitations cannot be "
+             "compared between channels, days or people",
+             result.channel, result.trials),
          std::nullopt, "record MVC trials, or fit the gain in the calibration"});
   }
   return result;

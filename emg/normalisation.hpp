@@ -41,9 +41,9 @@ struct EnvelopeView {
 struct NormalisationReference {
   std::string channel;
   Normalisation method = Normalisation::mvc;
-  double value = 1.0;          ///< [unit of the envelope] divides the envelope
-  std::string trial;           ///< where it was found
-  double time_s = 0.0;         ///< centre of the window on the trial's clock
+  double value = 1.0;   ///< [unit of the envelope] divides the envelope
+  std::string trial;    ///< where it was found
+  double time_s = 0.0;  ///< centre of the window on the trial's clock
   double window_s = 0.0;
   std::size_t trials = 0;      ///< number of trials searched
   double expected_bias = 0.0;  ///< by which `value` is expected to exceed the plateau's true mean, e.g. 0.065
@@ -84,7 +84,8 @@ WindowMaximum moving_window_maximum(std::span<const double> samples, double rate
 double envelope_variation(double window_s, double lowpass_hz, double bandwidth_hz);
 /// Relative excess of the largest window mean over the true mean: CV (c + 0.5772/c), c = sqrt(2 ln N), N the expected
 /// number of up-crossings of the mean in all plateaus (Davenport 1964, doi:10.1680/iicep.1964.10112).
-double expected_bias(double window_s, double lowpass_hz, double plateau_s, std::size_t trials, double bandwidth_hz);
+double expected_bias(double window_s, double lowpass_hz, double plateau_s, std::size_t trials,
+                     double bandwidth_hz);
 
 /// Excitation above 1 is information (a poor MVC): counted and time-stamped, never clamped.
 struct Excess {

@@ -37,7 +37,8 @@ double envelope_variation(double window_s, double lowpass_hz, double bandwidth_h
   return std::sqrt(1.05 * moments(window_s, lowpass_hz).zeroth / (2.0 * bandwidth_hz));
 }
 
-double expected_bias(double window_s, double lowpass_hz, double plateau_s, std::size_t trials, double bandwidth_hz) {
+double expected_bias(double window_s, double lowpass_hz, double plateau_s, std::size_t trials,
+                     double bandwidth_hz) {
   const Moments m = moments(window_s, lowpass_hz);
   const double searched = static_cast<double>(trials) * std::max(0.0, plateau_s - window_s);
   const double crossings = std::sqrt(m.second / m.zeroth) * searched;

@@ -21,13 +21,17 @@ void check(std::span<const double> x, double rate_hz, const std::string& channel
   std::vector<data::Diagnostic> list;
   const auto need = [&](bool good, const char* name, double value, const char* must) {
     if (!good || !std::isfinite(value)) {
-      list.push_back({data::Severity::error, "out-of-range", fmt::format("`{}` = {} must be {}", name, value, must),
-                      std::nullopt, {}});
+      list.push_back({data::Severity::error,
+                      "out-of-range",
+                      fmt::format("`{}` = {} must be {}", name, value, must),
+                      std::nullopt,
+                      {}});
     }
   };
   need(rate_hz > 0.0, "rate_hz", rate_hz, "> 0");
   need(o.factor >= 0.0, "factor", o.factor, ">= 0");
-  need(o.lowpass_hz > 0.0 && o.lowpass_hz < 0.5 * rate_hz, "lowpass_hz", o.lowpass_hz, "between 0 and half the rate");
+  need(o.lowpass_hz > 0.0 && o.lowpass_hz < 0.5 * rate_hz, "lowpass_hz", o.lowpass_hz,
+       "between 0 and half the rate");
   need(o.window_s > 0.0, "window_s", o.window_s, "> 0");
   need(o.minimum_active_s >= 0.0, "minimum_active_s", o.minimum_active_s, ">= 0");
   need(o.minimum_gap_s >= 0.0, "minimum_gap_s", o.minimum_gap_s, ">= 0");
@@ -37,8 +41,8 @@ void check(std::span<const double> x, double rate_hz, const std::string& channel
   const double needed = std::max(o.window_s, o.baseline_length_s) + 0.05;
   if (static_cast<double>(x.size()) < needed * rate_hz) {
     throw data::InputError("trial-too-short",
-                           fmt::format("channel `{}` has {:.4g} s; finding onsets needs at least {:.4g} s", channel,
-                                       static_cast<double>(x.size()) / rate_hz, needed));
+                           fmt::format("channel `{}` has {:.4g} s; finding onsets needs at least {:.4g} s",
+                                       channel, static_cast<double>(x.size()) / rate_hz, needed));
   }
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (std::isfinite(x[k])) continue;
@@ -64,17 +68,18 @@ struct Range {
 };
 
 // The samples that are taken as rest: those named, or the window of lowest mean.
-Range baseline_range(std::span<const double> d, double rate_hz, double start_time_s, const std::string& channel,
-                     const OnsetOptions& o) {
+Range baseline_range(std::span<const double> d, double rate_hz, double start_time_s,
+                     const std::string& channel, const OnsetOptions& o) {
   if (o.baseline_from_s != o.baseline_to_s) {
     const double from = (o.baseline_from_s - start_time_s) * rate_hz;
     const double to = (o.baseline_to_s - start_time_s) * rate_hz;
     if (!(from >= -0.5 && to > from + 2.0 && to <= static_cast<double>(d.size()) + 0.5)) {
-      throw data::InputError("out-of-range",
-                             fmt::format("the baseline {} s to {} s of channel `{}` must lie inside the trial, {:.6g} s to "
-                                         "{:.6g} s, and hold more than two samples",
-                                         o.baseline_from_s, o.baseline_to_s, channel, start_time_s,
-                                         start_time_s + static_cast<double>(d.size()) / rate_hz));
+      throw data::InputError(
+          "out-of-range",
+          fmt::format("the baseline {} s to {} s of channel `{}` must lie inside the trial, {:.6g} s to "
+                      "{:.6g} s, and hold more than two samples",
+                      o.baseline_from_s, o.baseline_to_s, channel, start_time_s,
+                      start_time_s + static_cast<double>(d.size()) / rate_hz));
     }
     return {static_cast<std::size_t>(std::max(0.0, std::round(from))),
             std::min(d.size(), static_cast<std::size_t>(std::round(to)))};
@@ -129,7 +134,9 @@ std::vector<Range> merged(const std::vector<Range>& ranges, std::size_t shortest
 
 }  // namespace
 
-std::string to_string(OnsetMethod method) { return name_of(methods, method); }
+std::string to_string(OnsetMethod method) {
+  return name_of(methods, method);
+}
 OnsetMethod parse_onset_method(const std::string& name) {
   return parse_name(methods, name, "unknown-onset-method", "a method of onset detection");
 }
@@ -145,21 +152,26 @@ OnsetResult detect_onsets(std::span<const double> samples, double rate_hz, doubl
   const auto n = static_cast<double>(rest.last - rest.first);
   for (std::size_t k = rest.first; k < rest.last; ++k) result.baseline_mean += d[k] / n;
   double variance = 0.0;
-  for (std::size_t k = rest.first; k < rest.last; ++k) variance += std::pow(d[k] - result.baseline_mean, 2) / (n - 1.0);
+  for (std::size_t k = rest.first; k < rest.last; ++k)
+    variance += std::pow(d[k] - result.baseline_mean, 2) / (n - 1.0);
   result.baseline_sd = std::sqrt(variance);
   result.baseline_from_s = time(rest.first);
   result.baseline_to_s = time(rest.last);
   if (!(result.baseline_sd > 0.0)) {
-    throw data::InputError("constant-channel",
-                           fmt::format("channel `{}` does not vary at rest ({:.6g} s to {:.6g} s): no threshold can be set",
-                                       channel, result.baseline_from_s, result.baseline_to_s),
-                           "name a baseline in which the channel was recording");
+    throw data::InputError(
+        "constant-channel",
+        fmt::format("channel `{}` does not vary at rest ({:.6g} s to {:.6g} s): no threshold can be set",
+                    channel, result.baseline_from_s, result.baseline_to_s),
+        "name a baseline in which the channel was recording");
   }
   const double h = o.factor > 0.0 ? o.factor : o.method == OnsetMethod::tkeo ? 15.0 : 3.0;
   result.threshold = result.baseline_mean + h * result.baseline_sd;
 
-  const auto samples_of = [&](double seconds) { return static_cast<std::size_t>(std::lround(seconds * rate_hz)); };
-  const std::vector<Range> raw = active_ranges(d, std::max<std::size_t>(1, samples_of(o.window_s)), result.threshold);
+  const auto samples_of = [&](double seconds) {
+    return static_cast<std::size_t>(std::lround(seconds * rate_hz));
+  };
+  const std::vector<Range> raw =
+      active_ranges(d, std::max<std::size_t>(1, samples_of(o.window_s)), result.threshold);
   for (const Range& r : merged(raw, samples_of(o.minimum_gap_s), samples_of(o.minimum_active_s))) {
     Burst burst;
     burst.onset_s = time(r.first);

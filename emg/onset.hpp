@@ -28,20 +28,21 @@ struct OnsetOptions {
   double window_s = 0.025;         ///< of the mean that must exceed the threshold (Hodges & Bui: 25 ms)
   double minimum_active_s = 0.05;  ///< shorter bursts are dropped
   double minimum_gap_s = 0.05;     ///< shorter gaps are closed
-  double baseline_from_s = 0.0;    ///< rest on the trial's clock; from == to: the quietest baseline_length_s is found
+  double baseline_from_s =
+      0.0;  ///< rest on the trial's clock; from == to: the quietest baseline_length_s is found
   double baseline_to_s = 0.0;
   double baseline_length_s = 0.5;
 };
 
 struct Burst {
-  double onset_s = 0.0, offset_s = 0.0;  ///< on the trial's clock
-  double mean_detector = 0.0;            ///< mean of the detector signal over it / threshold
+  double onset_s = 0.0, offset_s = 0.0;           ///< on the trial's clock
+  double mean_detector = 0.0;                     ///< mean of the detector signal over it / threshold
   bool cut_at_start = false, cut_at_end = false;  ///< active at the trial's first or last sample
 };
 
 struct OnsetResult {
   std::vector<Burst> bursts;
-  double threshold = 0.0;                 ///< in the detector's unit
+  double threshold = 0.0;  ///< in the detector's unit
   double baseline_mean = 0.0, baseline_sd = 0.0;
   double baseline_from_s = 0.0, baseline_to_s = 0.0;
 };

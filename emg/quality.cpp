@@ -15,8 +15,11 @@ void check(std::size_t count, double rate_hz, const std::string& trial, const st
   std::vector<data::Diagnostic> list;
   const auto positive = [&](const char* name, double value) {
     if (!(value > 0.0)) {
-      list.push_back({data::Severity::error, "out-of-range", fmt::format("`{}` = {} must be > 0", name, value),
-                      std::nullopt, {}});
+      list.push_back({data::Severity::error,
+                      "out-of-range",
+                      fmt::format("`{}` = {} must be > 0", name, value),
+                      std::nullopt,
+                      {}});
     }
   };
   positive("rate_hz", rate_hz);
@@ -25,15 +28,19 @@ void check(std::size_t count, double rate_hz, const std::string& trial, const st
   positive("activity_window_s", o.activity_window_s);
   positive("welch_s", o.welch_s);
   if (!(o.line_hz >= 0.0)) {
-    list.push_back({data::Severity::error, "out-of-range", fmt::format("`line_hz` = {} must be >= 0", o.line_hz),
-                    std::nullopt, {}});
+    list.push_back({data::Severity::error,
+                    "out-of-range",
+                    fmt::format("`line_hz` = {} must be >= 0", o.line_hz),
+                    std::nullopt,
+                    {}});
   }
   if (!list.empty()) throw data::InputError(std::move(list));
   const double needed = std::max({2.0 * o.welch_s, 2.0 * o.baseline_window_s, 4.0 * o.activity_window_s});
   if (static_cast<double>(count) < needed * rate_hz) {
-    throw data::InputError("trial-too-short",
-                           fmt::format("channel `{}` of trial `{}` has {:.4g} s; judging its quality needs {:.4g} s",
-                                       channel, trial, static_cast<double>(count) / rate_hz, needed));
+    throw data::InputError(
+        "trial-too-short",
+        fmt::format("channel `{}` of trial `{}` has {:.4g} s; judging its quality needs {:.4g} s", channel,
+                    trial, static_cast<double>(count) / rate_hz, needed));
   }
 }
 
@@ -92,10 +99,13 @@ void measure_activity(std::span<const double> x, double rate_hz, const QualityOp
     rms.push_back(std::sqrt(power / static_cast<double>(width)));
   }
   std::sort(rms.begin(), rms.end());
-  const auto percentile = [&](double p) { return rms[static_cast<std::size_t>(std::lround(p * static_cast<double>(rms.size() - 1)))]; };
+  const auto percentile = [&](double p) {
+    return rms[static_cast<std::size_t>(std::lround(p * static_cast<double>(rms.size() - 1)))];
+  };
   const double rest = percentile(0.05), activity = percentile(0.95);
   // A rest of exact zeros (a gated recording) has no measurable noise: 200 dB stands for "no noise seen".
-  q.snr_db = activity > 0.0 ? (rest > 0.0 ? std::min(200.0, 20.0 * std::log10(activity / rest)) : 200.0) : 0.0;
+  q.snr_db =
+      activity > 0.0 ? (rest > 0.0 ? std::min(200.0, 20.0 * std::log10(activity / rest)) : 200.0) : 0.0;
 }
 
 // Power that stands out at a line frequency and its harmonics, as a share of all power: the bins within the Hann
@@ -141,18 +151,21 @@ void judge(const QualityOptions& o, ChannelQuality& q) {
   reason(q.clipped_fraction > o.clipping_fraction,
          fmt::format("clipping: {:.3g} % of the samples lie at the range's ends (limit {:.3g} %)",
                      100.0 * q.clipped_fraction, 100.0 * o.clipping_fraction));
-  reason(q.dropout_fraction > 0.5, fmt::format("flat line: {:.3g} % of the trial repeats one value", 100.0 * q.dropout_fraction));
-  reason(q.dropout_fraction > o.dropout_fraction,
-         fmt::format("dropouts: {} runs of one repeated value, {:.3g} % of the trial, the longest {:.3g} s (limit {:.3g} %)",
-                     q.dropouts, 100.0 * q.dropout_fraction, q.longest_dropout_s, 100.0 * o.dropout_fraction));
+  reason(q.dropout_fraction > 0.5,
+         fmt::format("flat line: {:.3g} % of the trial repeats one value", 100.0 * q.dropout_fraction));
+  reason(
+      q.dropout_fraction > o.dropout_fraction,
+      fmt::format("dropouts: {} runs of one repeated value, {:.3g} % of the trial, the longest {:.3g} s "
+                  "(limit {:.3g} %)",
+                  q.dropouts, 100.0 * q.dropout_fraction, q.longest_dropout_s, 100.0 * o.dropout_fraction));
   reason(q.line_ratio > o.line_ratio,
-         fmt::format("line noise: {:.3g} % of the power at {} Hz and its harmonics (limit {:.3g} %)", 100.0 * q.line_ratio,
-                     q.line_hz, 100.0 * o.line_ratio));
+         fmt::format("line noise: {:.3g} % of the power at {} Hz and its harmonics (limit {:.3g} %)",
+                     100.0 * q.line_ratio, q.line_hz, 100.0 * o.line_ratio));
   reason(q.snr_db < o.snr_db,
          fmt::format("activity is only {:.3g} dB above rest (limit {:.3g} dB)", q.snr_db, o.snr_db));
   reason(q.baseline_drift > o.baseline_drift,
-         fmt::format("baseline drift: the baseline moves by {:.3g} x the EMG's RMS (limit {:.3g})", q.baseline_drift,
-                     o.baseline_drift));
+         fmt::format("baseline drift: the baseline moves by {:.3g} x the EMG's RMS (limit {:.3g})",
+                     q.baseline_drift, o.baseline_drift));
   reason(q.median_hz < o.median_low_hz || q.median_hz > o.median_high_hz,
          fmt::format("median frequency {:.3g} Hz is not that of surface EMG ({:.3g}-{:.3g} Hz)", q.median_hz,
                      o.median_low_hz, o.median_high_hz));

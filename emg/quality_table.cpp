@@ -16,7 +16,8 @@ data::Table quality_table(std::span<const ChannelQuality> rows) {
     for (const ChannelQuality& q : rows) values.push_back(of(q));
     table.columns.push_back({name, "", std::move(values)});
   };
-  const auto number = [&](const char* name, const char* unit, const std::function<double(const ChannelQuality&)>& of) {
+  const auto number = [&](const char* name, const char* unit,
+                          const std::function<double(const ChannelQuality&)>& of) {
     std::vector<double> values;
     for (const ChannelQuality& q : rows) values.push_back(of(q));
     table.columns.push_back({name, unit, std::move(values)});

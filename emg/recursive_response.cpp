@@ -31,7 +31,8 @@ void recursive_response(StartUp start_up, const RecursionParameters& p, std::spa
   Recursion neural{b2, b3, past, past};
   Recursion by_delay{b2, b3}, by_g1{b2, b3}, by_g2{b2, b3};
 
-  double v1 = 0.0, v2 = 0.0, dv1 = 0.0, dv2 = 0.0;  // delayed excitation and its slope, one and two samples ago
+  double v1 = 0.0, v2 = 0.0, dv1 = 0.0,
+         dv2 = 0.0;  // delayed excitation and its slope, one and two samples ago
   for (std::size_t k = 0; k < n; ++k) {
     // v = e(t_k - d), linear between samples;  ∂v/∂d = -e'(t_k - d), the slope of the piece towards a longer delay
     const double newer = sample(k, whole), older = sample(k, whole + 1);

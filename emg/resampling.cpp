@@ -31,7 +31,9 @@ double kernel(double t) {
 
 double reflected(std::span<const double> x, std::ptrdiff_t i) {
   const auto last = static_cast<std::ptrdiff_t>(x.size()) - 1;
-  const auto at = [&](std::ptrdiff_t k) { return x[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, last))]; };
+  const auto at = [&](std::ptrdiff_t k) {
+    return x[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, last))];
+  };
   if (i < 0) return 2.0 * x[0] - at(-i);
   if (i > last) return 2.0 * at(last) - at(2 * last - i);
   return at(i);

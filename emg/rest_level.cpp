@@ -9,7 +9,8 @@
 namespace brachium::emg {
 
 std::size_t remove_rest(std::span<double> envelope, double rest) {
-  if (!(rest >= 0.0) || !std::isfinite(rest)) throw data::InputError("out-of-range", fmt::format("the rest level `{}` must be 0 or greater", rest));
+  if (!(rest >= 0.0) || !std::isfinite(rest))
+    throw data::InputError("out-of-range", fmt::format("the rest level `{}` must be 0 or greater", rest));
   std::size_t floored = 0;
   for (double& e : envelope) {
     const double square = e * e - rest * rest;

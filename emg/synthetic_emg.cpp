@@ -26,16 +26,19 @@ void check(std::span<const double> excitation, double excitation_rate_hz, const 
   std::vector<data::Diagnostic> list;
   const auto need = [&](bool good, const std::string& name, double value, const char* must) {
     if (!good || !std::isfinite(value)) {
-      list.push_back({data::Severity::error, "out-of-range", fmt::format("`{}` = {} must {}", name, value, must),
-                      std::nullopt, {}});
+      list.push_back({data::Severity::error,
+                      "out-of-range",
+                      fmt::format("`{}` = {} must {}", name, value, must),
+                      std::nullopt,
+                      {}});
     }
   };
   need(excitation_rate_hz > 0.0, "excitation_rate_hz", excitation_rate_hz, "be > 0");
   need(o.rate_hz > 0.0, "rate_hz", o.rate_hz, "be > 0");
   need(o.amplitude_V > 0.0, "amplitude_V", o.amplitude_V, "be > 0");
   need(o.spectrum_low_hz > 0.0, "spectrum_low_hz", o.spectrum_low_hz, "be > 0");
-  need(o.spectrum_high_hz > 0.0 && o.spectrum_high_hz < 0.5 * o.rate_hz, "spectrum_high_hz", o.spectrum_high_hz,
-       "lie between 0 and half the rate");
+  need(o.spectrum_high_hz > 0.0 && o.spectrum_high_hz < 0.5 * o.rate_hz, "spectrum_high_hz",
+       o.spectrum_high_hz, "lie between 0 and half the rate");
   need(o.band_low_hz > 0.0 && o.band_low_hz < o.band_high_hz, "band_low_hz", o.band_low_hz,
        "lie between 0 and `band_high_hz`");
   need(o.band_high_hz < 0.5 * o.rate_hz, "band_high_hz", o.band_high_hz, "lie below half the rate");
@@ -53,9 +56,12 @@ void check(std::span<const double> excitation, double excitation_rate_hz, const 
   need(o.dropout_s > 0.0, "dropout_s", o.dropout_s, "be > 0");
   for (std::size_t k = 0; k < excitation.size(); ++k) {
     if (!(excitation[k] >= 0.0) || !std::isfinite(excitation[k])) {
-      list.push_back({data::Severity::error, "not-finite",
-                      fmt::format("the excitation is `{}` at sample {}; it must be finite and >= 0", excitation[k], k),
-                      std::nullopt, {}});
+      list.push_back(
+          {data::Severity::error,
+           "not-finite",
+           fmt::format("the excitation is `{}` at sample {}; it must be finite and >= 0", excitation[k], k),
+           std::nullopt,
+           {}});
       break;
     }
   }
@@ -116,7 +122,8 @@ std::vector<Biquad> muscle_spectrum(const SyntheticEmgOptions& o) {
   const double high = std::tan(pi * o.spectrum_high_hz / o.rate_hz);
   const double d = (1.0 + low) * (1.0 + high);
   std::vector<Biquad> sections;
-  sections.push_back({high / d, 0.0, -high / d, 2.0 * (low * high - 1.0) / d, (1.0 - low) * (1.0 - high) / d});
+  sections.push_back(
+      {high / d, 0.0, -high / d, 2.0 * (low * high - 1.0) / d, (1.0 - low) * (1.0 - high) / d});
   sections.push_back({high / (1.0 + high), high / (1.0 + high), 0.0, (high - 1.0) / (1.0 + high), 0.0});
   append(sections, FilterSpec::high_pass(o.band_low_hz), o.rate_hz);
   append(sections, FilterSpec::low_pass(o.band_high_hz), o.rate_hz);
@@ -140,7 +147,8 @@ void add_heart(std::vector<double>& x, const SyntheticEmgOptions& o) {
   struct Wave {
     double height, centre_s, width_s;
   };
-  static constexpr Wave waves[] = {{-0.12, -0.028, 0.009}, {1.0, 0.0, 0.010}, {-0.25, 0.030, 0.011}, {0.20, 0.250, 0.045}};
+  static constexpr Wave waves[] = {
+      {-0.12, -0.028, 0.009}, {1.0, 0.0, 0.010}, {-0.25, 0.030, 0.011}, {0.20, 0.250, 0.045}};
   Random random = sequence(o, heart);
   const double duration = static_cast<double>(x.size()) / o.rate_hz;
   double beat = -random.uniform() / o.heart_rate_hz;
@@ -159,7 +167,8 @@ void add_heart(std::vector<double>& x, const SyntheticEmgOptions& o) {
 
 void add_dropouts(SyntheticEmg& emg, const SyntheticEmgOptions& o) {
   Random random = sequence(o, dropout);
-  emg.dropout_samples = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(o.dropout_s * o.rate_hz)));
+  emg.dropout_samples =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(o.dropout_s * o.rate_hz)));
   const double mean_gap = 60.0 / o.dropouts_per_minute;
   const double duration = static_cast<double>(emg.raw.size()) / o.rate_hz;
   for (double t = -mean_gap * portable_log(random.uniform()); t < duration;
@@ -168,7 +177,8 @@ void add_dropouts(SyntheticEmg& emg, const SyntheticEmgOptions& o) {
     if (first >= emg.raw.size()) break;
     emg.dropout_first.push_back(first);
     const std::size_t last = std::min(emg.raw.size(), first + emg.dropout_samples);
-    std::fill(emg.raw.begin() + static_cast<std::ptrdiff_t>(first), emg.raw.begin() + static_cast<std::ptrdiff_t>(last), 0.0);
+    std::fill(emg.raw.begin() + static_cast<std::ptrdiff_t>(first),
+              emg.raw.begin() + static_cast<std::ptrdiff_t>(last), 0.0);
   }
 }
 
@@ -209,7 +219,8 @@ SyntheticEmg synthesise_emg(std::span<const double> excitation, double excitatio
     ColouredNoise slow(std::move(sections), o.rate_hz, sequence(o, motion));
     for (double& x : emg.raw) x += o.motion_V * slow();
   }
-  for (std::size_t k = 0; k < n; ++k) emg.raw[k] += o.offset_V + o.drift_V_per_s * static_cast<double>(k) / o.rate_hz;
+  for (std::size_t k = 0; k < n; ++k)
+    emg.raw[k] += o.offset_V + o.drift_V_per_s * static_cast<double>(k) / o.rate_hz;
   if (o.clip_V > 0.0) {
     for (double& x : emg.raw) {
       if (std::abs(x) > o.clip_V) {

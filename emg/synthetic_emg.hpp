@@ -20,19 +20,20 @@
 namespace brachium::emg {
 
 struct SyntheticEmgOptions {
-  double rate_hz = 2000.0;           ///< of the EMG
-  double amplitude_V = 0.5e-3;       ///< standard deviation of the clean EMG at excitation 1
-  double spectrum_low_hz = 60.0;     ///< f_l
-  double spectrum_high_hz = 120.0;   ///< f_h
-  double band_low_hz = 20.0;         ///< high-pass edge of the electrode and amplifier
-  double band_high_hz = 450.0;       ///< low-pass edge; below Nyquist
-  std::optional<double> snr_db;      ///< power of the clean EMG at excitation 1 over white sensor noise; none: no noise
-  double hum_hz = 50.0;              ///< line frequency
-  double hum_V = 0.0;                ///< amplitude of the fundamental; harmonic k (odd ones 3, 5, ...) has 1/k of it
-  int hum_harmonics = 3;             ///< number of sines, the fundamental among them
-  double ecg_V = 0.0;                ///< height of the R wave as it reaches the electrode
+  double rate_hz = 2000.0;          ///< of the EMG
+  double amplitude_V = 0.5e-3;      ///< standard deviation of the clean EMG at excitation 1
+  double spectrum_low_hz = 60.0;    ///< f_l
+  double spectrum_high_hz = 120.0;  ///< f_h
+  double band_low_hz = 20.0;        ///< high-pass edge of the electrode and amplifier
+  double band_high_hz = 450.0;      ///< low-pass edge; below Nyquist
+  std::optional<double>
+      snr_db;             ///< power of the clean EMG at excitation 1 over white sensor noise; none: no noise
+  double hum_hz = 50.0;   ///< line frequency
+  double hum_V = 0.0;     ///< amplitude of the fundamental; harmonic k (odd ones 3, 5, ...) has 1/k of it
+  int hum_harmonics = 3;  ///< number of sines, the fundamental among them
+  double ecg_V = 0.0;     ///< height of the R wave as it reaches the electrode
   double heart_rate_hz = 1.15;
-  double motion_V = 0.0;             ///< standard deviation of motion artefact: noise below 10 Hz
+  double motion_V = 0.0;  ///< standard deviation of motion artefact: noise below 10 Hz
   double offset_V = 0.0;
   double drift_V_per_s = 0.0;
   double clip_V = 0.0;               ///< amplifier range: |x| is limited to it; 0: no limit
@@ -43,13 +44,14 @@ struct SyntheticEmgOptions {
 };
 
 struct SyntheticEmg {
-  std::vector<double> raw;    ///< what the recorder stores [V]
-  std::vector<double> clean;  ///< s(e) n alone [V]
-  std::vector<double> excitation;  ///< the excitation at the EMG's rate
+  std::vector<double> raw;                 ///< what the recorder stores [V]
+  std::vector<double> clean;               ///< s(e) n alone [V]
+  std::vector<double> excitation;          ///< the excitation at the EMG's rate
   std::vector<std::size_t> dropout_first;  ///< first sample of each dropout
   std::size_t dropout_samples = 0;         ///< length of each (the last one may be cut by the end)
   std::size_t clipped_samples = 0;
-  double mean_rectified_at_unit_V = 0.0;  ///< E|clean| at excitation 1: amplitude_V sqrt(2/pi), the truth of an MVC
+  double mean_rectified_at_unit_V =
+      0.0;  ///< E|clean| at excitation 1: amplitude_V sqrt(2/pi), the truth of an MVC
 };
 
 /// EMG of an excitation trace (>= 0, at excitation_rate_hz, linear between its samples). Length: the trace's duration

@@ -36,9 +36,10 @@ void add_power(std::span<const double> packed, std::span<double> power) {
 Periodogram welch(std::span<const double> samples, double rate_hz, double segment_s) {
   const auto n = static_cast<std::size_t>(std::lround(segment_s * rate_hz));
   if (n < 8 || samples.size() < n) {
-    throw data::InputError("trial-too-short",
-                           fmt::format("a periodogram of `{}` s segments at {} Hz needs at least {} samples, there are {}",
-                                       segment_s, rate_hz, std::max<std::size_t>(n, 8), samples.size()));
+    throw data::InputError(
+        "trial-too-short",
+        fmt::format("a periodogram of `{}` s segments at {} Hz needs at least {} samples, there are {}",
+                    segment_s, rate_hz, std::max<std::size_t>(n, 8), samples.size()));
   }
   const std::unique_ptr<gsl_fft_real_wavetable, Free> table(gsl_fft_real_wavetable_alloc(n));
   const std::unique_ptr<gsl_fft_real_workspace, Free> workspace(gsl_fft_real_workspace_alloc(n));
@@ -47,7 +48,8 @@ Periodogram welch(std::span<const double> samples, double rate_hz, double segmen
   std::vector<double> window(n), segment(n);
   double window_power = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+    window[i] =
+        0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
     window_power += window[i] * window[i];
   }
 

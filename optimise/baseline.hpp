@@ -1,18 +1,16 @@
 #pragma once
 /// Regressions with no physiology, on the same split: what a muscle model must beat.
 ///
-/// Feature sets, for channels c_k, angle q, velocity q', acceleration q''; a constant column is always
-/// fitted:
+/// Feature sets, for channels c_k, angle q, velocity q', acceleration q''; a constant column is always fitted:
 ///
-/// | name               | columns |
+/// | name               | columns                                                                              |
 /// |--------------------|--------------------------------------------------------------------------------------|
-/// | linear_envelope    | c_k for every channel, sin q | | angle_polynomial   | q, q^2, ..., q^degree (no
-/// EMG)                                                       | | flexible           | for delays 0, 0.1, 0.2
-/// s and every channel: c, c sin q, c cos q, c q', c q' sin q; then | |                    | q, q^2, q^3, sin
-/// q, cos q, q', q'': 52 columns with three channels                   |
+/// | linear_envelope    | c_k for every channel, sin q                                                         |
+/// | angle_polynomial   | q, q^2, ..., q^degree (no EMG)                                                       |
+/// | flexible           | for delays 0, 0.1, 0.2 s and every channel: c, c sin q, c cos q, c q', c q' sin q; then |
+/// |                    | q, q^2, q^3, sin q, cos q, q', q'': 52 columns with three channels                   |
 ///
-/// Columns are standardised on the training trials; `ridge` is the penalty per sample on standardised
-/// weights.
+/// Columns are standardised on the training trials; `ridge` is the penalty per sample on standardised weights.
 
 #include <string>
 #include <vector>

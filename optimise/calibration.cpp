@@ -172,13 +172,11 @@ CalibrationResult calibrate(const data::Scene& scene, const std::vector<Calibrat
 
   result.subject = problem.subject(result.x);
   result.subject.name = options.subject_name;
-  result.subject.verdicts =
-      verdicts({&result.parameters, result.x, result.x_uncorrected, result.excitation_error.bias,
-                &result.statistics,
-                profile_intervals(problem, result.x, result.statistics.covariance,
-                                  student_quantile(result.statistics.degrees_of_freedom),
-                                  options.problem.threads),
-                problem.gain_strength_pairs()});
+  result.subject.verdicts = verdicts(
+      {&result.parameters, result.x, result.x_uncorrected, result.excitation_error.bias, &result.statistics,
+       profile_intervals(problem, result.x, result.statistics.covariance,
+                         student_quantile(result.statistics.degrees_of_freedom), options.problem.threads),
+       problem.gain_strength_pairs()});
   add_metrics(problem, result);
   std::string names;
   for (const CalibrationTrial& trial : trials) names += (names.empty() ? "" : ", ") + trial.name;

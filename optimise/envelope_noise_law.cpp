@@ -67,7 +67,7 @@ std::vector<double> without_noise_floor(std::vector<double> envelope, double flo
 }
 
 double overlapping_noise_floor(double floor, const std::vector<double>& emg_power,
-                             const std::vector<double>& noise_power) {
+                               const std::vector<double>& noise_power) {
   if (emg_power.size() != noise_power.size() || emg_power.empty())
     throw data::InputError("wrong-size",
                            "the spectra of EMG and sensor noise must be given on the same frequencies");

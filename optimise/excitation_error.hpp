@@ -60,7 +60,7 @@ std::vector<double> with_envelope_noise(std::vector<double> excitation, double r
 /// spectra overlap, f^2 = floor^2 (int P_e P_n / (int P_e int P_n)) / (int P_e^2 / (int
 /// P_e)^2). Spectra on one grid.
 double overlapping_noise_floor(double floor, const std::vector<double>& emg_power,
-                             const std::vector<double>& noise_power);
+                               const std::vector<double>& noise_power);
 
 /// c of the linear envelope (full-wave rectified, zero-lag 4th-order Butterworth low-pass with -3 dB at
 /// cutoff_hz) of Gaussian noise whose power spectrum is given on equally spaced frequencies: the

@@ -3,14 +3,14 @@
 /// at which angles given activations hold a load, and where a load history takes the limb. Over any muscle
 /// model.
 ///
-/// | symbol | identifier           | unit    | meaning |
-/// |--------|----------------------|---------|--------------------------------------------------------------------|
-/// | q      | angle_rad            | rad     | the joint's angle, flexion positive | | a      | activation |
-/// 1       | activations of all muscles                                         | | L      | load | N       |
-/// size of the external load, sign as its arm says                    | | l(q)   | load_arm             | m
-/// | moment for each newton of load, flexion positive                   | | M      | moment_N_m           | N
-/// m     | M(q, a, L) = Σ r F + l(q) L + M_ext(q), flexion positive           | | S      | scale_N_m | N m |
-/// Σ |r F| + |l L| + |M_ext|                                          |
+/// | symbol | identifier | unit | meaning                                                  |
+/// |--------|------------|------|----------------------------------------------------------|
+/// | q      | angle_rad  | rad  | the joint's angle, flexion positive                      |
+/// | a      | activation | 1    | activations of all muscles                               |
+/// | L      | load       | N    | size of the external load, sign as its arm says          |
+/// | l(q)   | load_arm   | m    | moment for each newton of load, flexion positive         |
+/// | M      | moment_N_m | N m  | M(q, a, L) = Σ r F + l(q) L + M_ext(q), flexion positive |
+/// | S      | scale_N_m  | N m  | Σ |r F| + |l L| + |M_ext|                                |
 ///
 /// All of them solve M = 0. An iteration stops where |M| < max(1e-6 S, 10 tolerance), tolerance being what
 /// the model's own solver leaves open in M. Derivatives of the answers come from the implicit function

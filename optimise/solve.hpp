@@ -52,8 +52,8 @@ struct SolveOptions {
   double step_tolerance = 1e-11;  ///< ... or the step in scaled parameters is below ...
   double gradient_tolerance =
       1e-11;  ///< ... or the projected gradient relative to sqrt(2 f) max |J column| is below
-  double stall_tolerance = 1e-9;  ///< ... or, Levenberg-Marquardt, the relative decrease of f over 10
-                                  ///< iterations: at a kink of f the gradient never vanishes
+  double stall_tolerance = 1e-9;         ///< ... or, Levenberg-Marquardt, the relative decrease of f over 10
+                                         ///< iterations: at a kink of f the gradient never vanishes
   std::optional<Eigen::VectorXd> start;  ///< first start; default: the parameters' own
   std::size_t starts = 1;                ///< the first start, then points drawn between the bounds
   std::uint64_t seed = 1;                ///< of starts and of stochastic solvers; results repeat exactly

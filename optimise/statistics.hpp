@@ -1,19 +1,19 @@
 #pragma once
-/// What a least-squares fit says of its parameters: covariance under autocorrelated residuals, directions
-/// that the data do not see, correlations.
+/// What a least-squares fit says of its parameters: covariance under autocorrelated residuals, directions that
+/// the data do not see, correlations.
 ///
-/// | symbol | identifier          | unit      | meaning |
+/// | symbol | identifier          | unit      | meaning                                                        |
 /// |--------|---------------------|-----------|----------------------------------------------------------------|
-/// | J      | jacobian            | 1 / unit  | m x n, residual rows only | | P      | -                   |
-/// 1 / unit^2| diagonal of 1 / sd^2 of the priors                             | | H      | - | 1 / unit^2|
-/// J'J + P, the information the fit used                          | | S      | -                   | 1 /
-/// unit^2| long-run covariance of the scores J_i' r_i                     | | C      | covariance          |
-/// unit^2    | H^-1 (S + P) H^-1                                              | | tau    | inflation | 1 |
-/// samples per independent sample, 1 + 2 sum_k rho_k              |
+/// | J      | jacobian            | 1 / unit  | m x n, residual rows only                                      |
+/// | P      | -                   | 1 / unit^2| diagonal of 1 / sd^2 of the priors                             |
+/// | H      | -                   | 1 / unit^2| J'J + P, the information the fit used                          |
+/// | S      | -                   | 1 / unit^2| long-run covariance of the scores J_i' r_i                     |
+/// | C      | covariance          | unit^2    | H^-1 (S + P) H^-1                                              |
+/// | tau    | inflation           | 1         | samples per independent sample, 1 + 2 sum_k rho_k              |
 ///
-/// C is the covariance of x^ when the data carry the long-run noise S and the prior means are themselves off
-/// by their stated deviations (covariance P^-1, which enters the estimate through H^-1 P). It holds whatever
-/// weight the residuals were given, and however they are correlated inside a block.
+/// C is the covariance of x^ when the data carry the long-run noise S and the prior means are themselves off by their
+/// stated deviations (covariance P^-1, which enters the estimate through H^-1 P). It holds whatever weight the residuals
+/// were given, and however they are correlated inside a block.
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -1,16 +1,16 @@
 #pragma once
 /// A synthetic twin: sessions whose truth is known, generated from a scene.
 ///
-/// The scene's muscles are the truth. Trial programmes give an angle and an effort for flexors and extensors;
-/// efforts become channel excitations, these go through activation dynamics and the muscle model to a moment;
-/// raw EMG is band-limited noise whose amplitude follows the excitation, to which an electrode's troubles are
-/// added. Every random number comes from (seed, trial, signal): the same on every platform.
+/// The scene's muscles are the truth. Trial programmes give an angle and an effort for flexors and extensors; efforts
+/// become channel excitations, these go through activation dynamics and the muscle model to a moment; raw EMG is
+/// band-limited noise whose amplitude follows the excitation, to which an electrode's troubles are added. Every random
+/// number comes from (seed, trial, signal): the same on every platform.
 ///
-/// | symbol | identifier      | unit | meaning |
+/// | symbol | identifier      | unit | meaning                                                                |
 /// |--------|-----------------|------|------------------------------------------------------------------------|
-/// | e(t)   | excitation      | 1    | true channel excitation, 1 at the maximal contraction | | g      |
-/// channel_gains   | 1    | what a recorder shows is e / g (raw EMG and given excitations alike)   | | M(t)
-/// | joint_moment    | N m  | sum of r F over the muscles                                            |
+/// | e(t)   | excitation      | 1    | true channel excitation, 1 at the maximal contraction                  |
+/// | g      | channel_gains   | 1    | what a recorder shows is e / g (raw EMG and given excitations alike)   |
+/// | M(t)   | joint_moment    | N m  | sum of r F over the muscles                                            |
 
 #include <cstdint>
 #include <string>

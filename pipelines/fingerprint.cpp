@@ -47,7 +47,8 @@ std::string change_text(const std::string& key, const std::optional<std::string>
     if (!was) return fmt::format("the recording `{}` is new", name);
     return fmt::format("the recording `{}` {}", name, is ? "changed" : "is gone");
   }
-  if (group == "asset") return fmt::format("the file `{}` {}", name, !was ? "is new" : is ? "changed" : "is gone");
+  if (group == "asset")
+    return fmt::format("the file `{}` {}", name, !was ? "is new" : is ? "changed" : "is gone");
   if (group == "failed") return "it failed before";
   if (group == "program")
     return fmt::format("the program changed {} -> {}", was.value_or("unknown"), is.value_or("unknown"));

@@ -343,9 +343,14 @@ class Run {
     Options options = stage.options;
     for_each_file(options, stage.spec->options,
                   [&](const OptionSpec& option, std::string& path, const data::SourceSpan&) {
-                    std::string& part = parts[fmt::format("asset.{}", fs::path(path).filename().string())];
-                    part += fmt::format("{}{} {}", part.empty() ? "" : ", ", option.key,
-                                        digests_.of(path));  // files of one name
+                    const auto add = [&](const fs::path& file) {
+                      std::string& part = parts[fmt::format("asset.{}", file.filename().string())];
+                      part += fmt::format("{}{} {}", part.empty() ? "" : ", ", option.key,
+                                          digests_.of(file));  // files of one name
+                    };
+                    add(path);
+                    if (!option.files_within) return;
+                    for (const fs::path& file : option.files_within(path)) add(file);
                   });
     for (const auto& [port, wires] : stage.inputs) {
       for (std::size_t i = 0; i < wires.size(); ++i)

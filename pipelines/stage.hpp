@@ -47,6 +47,8 @@ struct OptionSpec {
   std::vector<OptionSpec> fields{};  ///< of a table, for OptionType::table and tables
   std::size_t length = 0;            ///< numbers: so many of them (3: a vector); 0: any
   bool is_file = false;  ///< text: an existing file, relative to the definition; part of the fingerprint
+  /// Files that such a file names itself, as far as they exist: part of the fingerprint too.
+  std::vector<std::filesystem::path> (*files_within)(const std::filesystem::path& file) = nullptr;
 };
 
 /// Validated options: every key of the specification that is required or has a default is present.

@@ -47,10 +47,12 @@ const std::vector<Template>& templates() {
         {"fim", "hill.moment",
          "input = { activation = \"activation\", kinematics = \"kinematics\", subject = \"subject\" }\n"}}},
       {"continuum",
-       "A continuum muscle with tendons that is stretched, then activated: its force, and its shape to look at.",
+       "A continuum muscle with tendons that is stretched, then activated: its force, and its shape to look "
+       "at.",
        false,
        false,
-       {{"muscle", "fem.solve", R"toml(mesh = { spindle = { belly_m = 0.12, belly_radius_m = 0.016, tendon_radius_m = 0.005, origin_tendon_m = 0.03, insertion_tendon_m = 0.03, transition_m = 0.02 } }
+       {{"muscle", "fem.solve",
+         R"toml(mesh = { spindle = { belly_m = 0.12, belly_radius_m = 0.016, tendon_radius_m = 0.005, origin_tendon_m = 0.03, insertion_tendon_m = 0.03, transition_m = 0.02 } }
 # mesh = { file = "muscle.msh", length_unit = "mm", elevate = true }  # your own: Gmsh, VTU, VTK or FEBio
 material = [
   { set = "sprenger", incompressible = true },   # of all regions; `regions = ["muscle"]` for one of several
@@ -118,8 +120,8 @@ std::string render_template(const std::string& name, const std::string& title, c
   for (const TemplateStage& stage : chosen->stages) {
     const StageSpec* spec = catalogue.find(stage.run);
     if (!spec) throw std::logic_error(fmt::format("template `{}` needs the stage `{}`", name, stage.run));
-    out += fmt::format("\n# {}\n[[stage]]\nname = \"{}\"\nrun = \"{}\"\n{}", spec->summary, stage.name, stage.run,
-                       chosen->session ? "# trials = [\"*\"]\n" : "");
+    out += fmt::format("\n# {}\n[[stage]]\nname = \"{}\"\nrun = \"{}\"\n{}", spec->summary, stage.name,
+                       stage.run, chosen->session ? "# trials = [\"*\"]\n" : "");
     out += stage.lines + comment_lines(*spec, stage.lines);
   }
   return out +

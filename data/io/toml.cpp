@@ -40,7 +40,8 @@ struct Converter {
     if (region.end.line == region.begin.line && region.end.column > region.begin.column) {
       s.length = static_cast<int>(region.end.column - region.begin.column);
     }
-    if (s.line >= 1 && static_cast<std::size_t>(s.line) <= lines.size()) s.text = lines[static_cast<std::size_t>(s.line - 1)];
+    if (s.line >= 1 && static_cast<std::size_t>(s.line) <= lines.size())
+      s.text = lines[static_cast<std::size_t>(s.line - 1)];
     return s;
   }
 
@@ -106,7 +107,9 @@ const TomlNode* TomlNode::find(const std::string& key) const {
   return nullptr;
 }
 
-TomlNode* TomlNode::find(const std::string& key) { return const_cast<TomlNode*>(std::as_const(*this).find(key)); }
+TomlNode* TomlNode::find(const std::string& key) {
+  return const_cast<TomlNode*>(std::as_const(*this).find(key));
+}
 
 TomlNode& TomlNode::member(const std::string& key) {
   kind = Kind::table;
@@ -157,16 +160,24 @@ TomlNode TomlNode::of(std::vector<std::string> values) {
   return n;
 }
 
-TomlNode TomlNode::table() { return TomlNode{}; }
+TomlNode TomlNode::table() {
+  return TomlNode{};
+}
 
 std::string describe(TomlNode::Kind kind) {
   switch (kind) {
-    case TomlNode::Kind::boolean: return "true or false";
-    case TomlNode::Kind::integer: return "a whole number";
-    case TomlNode::Kind::number: return "a number";
-    case TomlNode::Kind::text: return "a text";
-    case TomlNode::Kind::array: return "a list";
-    case TomlNode::Kind::table: return "a table";
+    case TomlNode::Kind::boolean:
+      return "true or false";
+    case TomlNode::Kind::integer:
+      return "a whole number";
+    case TomlNode::Kind::number:
+      return "a number";
+    case TomlNode::Kind::text:
+      return "a text";
+    case TomlNode::Kind::array:
+      return "a list";
+    case TomlNode::Kind::table:
+      return "a table";
   }
   return "a value";
 }
@@ -177,8 +188,8 @@ TomlNode parse_toml(const std::string& text, const std::string& file_name) {
   try {
     return convert(static_cast<const toml::node&>(toml::parse(text, file_name)));
   } catch (const toml::parse_error& e) {
-    throw InputError(Diagnostic{Severity::error, "toml-syntax", std::string(e.description()), convert.span(e.source()),
-                                "this is not valid TOML"});
+    throw InputError(Diagnostic{Severity::error, "toml-syntax", std::string(e.description()),
+                                convert.span(e.source()), "this is not valid TOML"});
   }
 }
 
@@ -186,7 +197,8 @@ TomlNode read_toml(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code ignored;
   if (!stream || std::filesystem::is_directory(file, ignored)) {
-    throw InputError("missing-file", fmt::format("cannot read `{}`", file.string()), "check the path; it is relative to the current folder");
+    throw InputError("missing-file", fmt::format("cannot read `{}`", file.string()),
+                     "check the path; it is relative to the current folder");
   }
   std::ostringstream text;
   text << stream.rdbuf();

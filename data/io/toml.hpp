@@ -22,10 +22,10 @@ struct TomlNode {
   std::int64_t integer = 0;
   double number = 0.0;  ///< also set for integers
   std::string text;
-  std::vector<TomlNode> items;                              ///< array
-  std::vector<std::pair<std::string, TomlNode>> members;    ///< table, in the order of the file
-  data::SourceSpan where;                                   ///< the value
-  data::SourceSpan key_where;                               ///< the key it stands under, if any
+  std::vector<TomlNode> items;                            ///< array
+  std::vector<std::pair<std::string, TomlNode>> members;  ///< table, in the order of the file
+  data::SourceSpan where;                                 ///< the value
+  data::SourceSpan key_where;                             ///< the key it stands under, if any
 
   const TomlNode* find(const std::string& key) const;
   TomlNode* find(const std::string& key);
@@ -66,7 +66,8 @@ class TomlTable {
   std::optional<bool> boolean(const std::string& key);
   std::optional<std::string> text(const std::string& key);
   std::optional<std::vector<double>> numbers(const std::string& key);
-  std::optional<std::vector<std::string>> texts(const std::string& key);  ///< one text stands for a list of one
+  std::optional<std::vector<std::string>> texts(
+      const std::string& key);  ///< one text stands for a list of one
   std::optional<TomlTable> table(const std::string& key);
   std::vector<TomlTable> tables(const std::string& key);  ///< array of tables; empty if absent
 
@@ -78,8 +79,10 @@ class TomlTable {
 
   /// Marks a key as known without reading it (for values read through node()).
   void know(const std::string& key) { known_.insert(key); }
-  void error(const std::string& code, const std::string& message, const std::string& key = {}, const std::string& help = {});
-  void warning(const std::string& code, const std::string& message, const std::string& key = {}, const std::string& help = {});
+  void error(const std::string& code, const std::string& message, const std::string& key = {},
+             const std::string& help = {});
+  void warning(const std::string& code, const std::string& message, const std::string& key = {},
+               const std::string& help = {});
   data::SourceSpan span_of(const std::string& key) const;  ///< the key's value, or the table itself
   /// Reports unknown keys, each with the nearest known one.
   void finish();

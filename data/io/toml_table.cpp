@@ -24,9 +24,12 @@ const TomlNode* TomlTable::take(const std::string& key) {
 }
 
 void TomlTable::wrong_type(const std::string& key, const std::string& wanted, const TomlNode& got) {
-  diagnostics_->push_back({Severity::error, "wrong-type",
-                           fmt::format("`{}`{} must be {}, not {}", key, context_.empty() ? "" : " of " + context_, wanted, describe(got.kind)),
-                           got.where, {}});
+  diagnostics_->push_back({Severity::error,
+                           "wrong-type",
+                           fmt::format("`{}`{} must be {}, not {}", key,
+                                       context_.empty() ? "" : " of " + context_, wanted, describe(got.kind)),
+                           got.where,
+                           {}});
 }
 
 std::optional<double> TomlTable::number(const std::string& key) {
@@ -82,7 +85,8 @@ std::optional<std::vector<double>> TomlTable::numbers(const std::string& key) {
   }
   std::vector<double> values;
   for (const TomlNode& item : n->items) {
-    if ((item.kind != TomlNode::Kind::number && item.kind != TomlNode::Kind::integer) || !std::isfinite(item.number)) {
+    if ((item.kind != TomlNode::Kind::number && item.kind != TomlNode::Kind::integer) ||
+        !std::isfinite(item.number)) {
       wrong_type(key, "a list of finite numbers", item);
       return std::nullopt;
     }
@@ -139,12 +143,14 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
 }
 
 double TomlTable::require_number(const std::string& key) {
-  if (!has(key)) error("missing-key", fmt::format("`{}` is missing{}", key, context_.empty() ? "" : " in " + context_));
+  if (!has(key))
+    error("missing-key", fmt::format("`{}` is missing{}", key, context_.empty() ? "" : " in " + context_));
   return number(key).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 std::string TomlTable::require_text(const std::string& key) {
-  if (!has(key)) error("missing-key", fmt::format("`{}` is missing{}", key, context_.empty() ? "" : " in " + context_));
+  if (!has(key))
+    error("missing-key", fmt::format("`{}` is missing{}", key, context_.empty() ? "" : " in " + context_));
   return text(key).value_or(std::string{});
 }
 
@@ -154,7 +160,8 @@ double TomlTable::positive(const std::string& key, std::optional<double> fallbac
     return *fallback;
   }
   const double v = require_number(key);
-  if (!std::isnan(v) && !(v > 0.0)) error("out-of-range", fmt::format("`{}` must be greater than 0, not {}", key, v), key);
+  if (!std::isnan(v) && !(v > 0.0))
+    error("out-of-range", fmt::format("`{}` must be greater than 0, not {}", key, v), key);
   return v;
 }
 
@@ -164,15 +171,18 @@ double TomlTable::non_negative(const std::string& key, std::optional<double> fal
     return *fallback;
   }
   const double v = require_number(key);
-  if (!std::isnan(v) && !(v >= 0.0)) error("out-of-range", fmt::format("`{}` must be 0 or greater, not {}", key, v), key);
+  if (!std::isnan(v) && !(v >= 0.0))
+    error("out-of-range", fmt::format("`{}` must be 0 or greater, not {}", key, v), key);
   return v;
 }
 
-void TomlTable::error(const std::string& code, const std::string& message, const std::string& key, const std::string& help) {
+void TomlTable::error(const std::string& code, const std::string& message, const std::string& key,
+                      const std::string& help) {
   diagnostics_->push_back({Severity::error, code, message, span_of(key), help});
 }
 
-void TomlTable::warning(const std::string& code, const std::string& message, const std::string& key, const std::string& help) {
+void TomlTable::warning(const std::string& code, const std::string& message, const std::string& key,
+                        const std::string& help) {
   diagnostics_->push_back({Severity::warning, code, message, span_of(key), help});
 }
 
@@ -185,9 +195,10 @@ void TomlTable::finish() {
   const std::vector<std::string> known(known_.begin(), known_.end());
   for (const auto& [key, value] : node_->members) {
     if (known_.contains(key)) continue;
-    diagnostics_->push_back({Severity::error, "unknown-key",
-                             fmt::format("`{}` is not a key of {}", key, context_.empty() ? "this file" : context_),
-                             value.key_where, data::suggest(key, known)});
+    diagnostics_->push_back(
+        {Severity::error, "unknown-key",
+         fmt::format("`{}` is not a key of {}", key, context_.empty() ? "this file" : context_),
+         value.key_where, data::suggest(key, known)});
   }
 }
 

@@ -10,18 +10,30 @@ namespace brachium::io {
 namespace {
 
 bool is_bare(const std::string& key) {
-  return !key.empty() && key.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
+  return !key.empty() &&
+         key.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") ==
+             std::string::npos;
 }
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     switch (c) {
-      case '"': out += "\\\""; break;
-      case '\\': out += "\\\\"; break;
-      case '\n': out += "\\n"; break;
-      case '\t': out += "\\t"; break;
-      case '\r': out += "\\r"; break;
+      case '"':
+        out += "\\\"";
+        break;
+      case '\\':
+        out += "\\\\";
+        break;
+      case '\n':
+        out += "\\n";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
+      case '\r':
+        out += "\\r";
+        break;
       default:
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
           out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
@@ -33,7 +45,9 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-std::string key_text(const std::string& key) { return is_bare(key) ? key : quoted(key); }
+std::string key_text(const std::string& key) {
+  return is_bare(key) ? key : quoted(key);
+}
 
 std::string number_text(double value) {
   if (std::isnan(value)) return "nan";
@@ -53,10 +67,14 @@ bool is_table_array(const TomlNode& node) {
 
 std::string inline_text(const TomlNode& node) {
   switch (node.kind) {
-    case TomlNode::Kind::boolean: return node.boolean ? "true" : "false";
-    case TomlNode::Kind::integer: return std::to_string(node.integer);
-    case TomlNode::Kind::number: return number_text(node.number);
-    case TomlNode::Kind::text: return quoted(node.text);
+    case TomlNode::Kind::boolean:
+      return node.boolean ? "true" : "false";
+    case TomlNode::Kind::integer:
+      return std::to_string(node.integer);
+    case TomlNode::Kind::number:
+      return number_text(node.number);
+    case TomlNode::Kind::text:
+      return quoted(node.text);
     case TomlNode::Kind::array: {
       std::string out = "[";
       for (std::size_t i = 0; i < node.items.size(); ++i) out += (i ? ", " : "") + inline_text(node.items[i]);
@@ -65,7 +83,8 @@ std::string inline_text(const TomlNode& node) {
     case TomlNode::Kind::table: {
       std::string out = "{ ";
       for (std::size_t i = 0; i < node.members.size(); ++i) {
-        out += (i ? ", " : "") + key_text(node.members[i].first) + " = " + inline_text(node.members[i].second);
+        out +=
+            (i ? ", " : "") + key_text(node.members[i].first) + " = " + inline_text(node.members[i].second);
       }
       return out + " }";
     }

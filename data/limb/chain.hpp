@@ -1,21 +1,19 @@
 #pragma once
 /// Rigid-body mechanics of a planar chain of hinges with parallel axes: an elbow is n = 1.
 ///
-/// | symbol | identifier    | unit   | meaning |
+/// | symbol | identifier    | unit   | meaning                                                                |
 /// |--------|---------------|--------|------------------------------------------------------------------------|
-/// | q      | q             | rad    | hinge angles, flexion positive, 0 = straight (n) | | phi_i  | - | rad
-/// | inclination of link i from straight down, phi_i = phi_0 + q_1 + .. + q_i | | u(phi) | -             | 1
-/// | direction of a link, (sin phi, -cos phi) in (forward, up)              | | k_i    | -             | kg m
-/// | S_i + L_i sum_{j>i} m_j: first moment of link i and all it carries     | | A_ij   | -             | kg
-/// m^2 | A_ii = I_i + L_i^2 sum_{j>i} m_j;  A_ij = L_i k_j for i < j            | | M      | moment        |
-/// N m    | moments that muscles exert at the hinges, flexion positive (n)         | | g      | gravity |
-/// m/s^2  | acceleration of free fall as a vector, (0, -9.80665)                   |
+/// | q      | q             | rad    | hinge angles, flexion positive, 0 = straight (n)                       |
+/// | phi_i  | -             | rad    | inclination of link i from straight down, phi_i = phi_0 + q_1 + .. + q_i |
+/// | u(phi) | -             | 1      | direction of a link, (sin phi, -cos phi) in (forward, up)              |
+/// | k_i    | -             | kg m   | S_i + L_i sum_{j>i} m_j: first moment of link i and all it carries     |
+/// | A_ij   | -             | kg m^2 | A_ii = I_i + L_i^2 sum_{j>i} m_j;  A_ij = L_i k_j for i < j            |
+/// | M      | moment        | N m    | moments that muscles exert at the hinges, flexion positive (n)         |
+/// | g      | gravity       | m/s^2  | acceleration of free fall as a vector, (0, -9.80665)                   |
 ///
 /// Lagrange's equations in the inclinations (a standard result, e.g. Murray, Li & Sastry 1994, ch. 4):
-///   sum_j A_ij cos(phi_i - phi_j) phi_j'' + A_ij sin(phi_i - phi_j) phi_j'^2 - k_i (g - a_0) . u'(phi_i) =
-///   Q_i,
-/// with the acceleration a_0 of the first hinge and Q_i = M_i - M_{i+1}; hence M_i = sum_{j>=i} of the left
-/// sides.
+///   sum_j A_ij cos(phi_i - phi_j) phi_j'' + A_ij sin(phi_i - phi_j) phi_j'^2 - k_i (g - a_0) . u'(phi_i) = Q_i,
+/// with the acceleration a_0 of the first hinge and Q_i = M_i - M_{i+1}; hence M_i = sum_{j>=i} of the left sides.
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -1,21 +1,20 @@
 #pragma once
 /// From a dynamometer's record to the moment of the muscles about the joint.
 ///
-/// | symbol   | identifier | unit   | meaning |
+/// | symbol   | identifier | unit   | meaning                                                                       |
 /// |----------|------------|--------|-------------------------------------------------------------------------------|
-/// | theta, T | -          | rad, N m | the machine's angle and torque, as recorded | | q        | angle_rad
-/// | rad    | joint angle, flexion positive, 0 = straight                                   | | T_l      |
-/// torque_N_m | N m    | torque that the limb exerts on the machine, flexion positive                  | |
-/// G(q)     | gravity    | N m    | moment of gravity on limb and machine arm, flexion positive | | I |
-/// inertia    | kg m^2 | limb and machine arm about the joint                                          | | M
-/// | moment_N_m | N m    | moment of the muscles, flexion positive                                       | |
-/// e, l     | -          | m      | joint centre from the machine's axis; machine axis to pad |
+/// | theta, T | -          | rad, N m | the machine's angle and torque, as recorded                                 |
+/// | q        | angle_rad  | rad    | joint angle, flexion positive, 0 = straight                                   |
+/// | T_l      | torque_N_m | N m    | torque that the limb exerts on the machine, flexion positive                  |
+/// | G(q)     | gravity    | N m    | moment of gravity on limb and machine arm, flexion positive                   |
+/// | I        | inertia    | kg m^2 | limb and machine arm about the joint                                          |
+/// | M        | moment_N_m | N m    | moment of the muscles, flexion positive                                       |
+/// | e, l     | -          | m      | joint centre from the machine's axis; machine axis to pad                     |
 ///
 /// Equation of motion of limb and machine arm, I q'' = M + G(q) - T_l, hence M = T_l - G(q) + I q''
-/// (Winter, Wells & Orr 1981, Eur J Appl Physiol 46; Herzog 1988, J Biomech 21: gravity and inertia are what
-/// sets the machine's torque apart from the joint's moment, next to a limb that gives way in its straps,
-/// which is not modelled). Passive tissue is part of M where G is computed from masses, and part of G where G
-/// is fitted to a passive sweep.
+/// (Winter, Wells & Orr 1981, Eur J Appl Physiol 46; Herzog 1988, J Biomech 21: gravity and inertia are what sets the
+/// machine's torque apart from the joint's moment, next to a limb that gives way in its straps, which is not modelled).
+/// Passive tissue is part of M where G is computed from masses, and part of G where G is fitted to a passive sweep.
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -1,21 +1,21 @@
 #pragma once
 /// The elbow moment that a recorded motion needs, and the uncertainty that assumed masses bring.
 ///
-/// | symbol | identifier           | unit    | meaning |
+/// | symbol | identifier           | unit    | meaning                                                             |
 /// |--------|----------------------|---------|---------------------------------------------------------------------|
-/// | u      | direction            | 1       | elbow -> hand, unit vector in the world frame | | n      |
-/// axis                 | 1       | flexion axis in the world frame, flexion positive                   | |
-/// S, I   | -                    | kg m, kg m^2 | sum m d and sum (I_c + m d^2) of forearm, hand and load |
-/// | a, g   | -                    | m/s^2   | acceleration of the elbow; free fall | | theta  |
-/// elevation_rad        | rad     | inclination of u from straight down, positive forward               | | M
-/// | moment_N_m           | N m     | muscle moment, flexion positive                                     |
-/// | A, B   | -                    | m/s^2, 1/s^2 | A = n . (u x (a - g)),  B = n . (u x u'') |
+/// | u      | direction            | 1       | elbow -> hand, unit vector in the world frame                       |
+/// | n      | axis                 | 1       | flexion axis in the world frame, flexion positive                   |
+/// | S, I   | -                    | kg m, kg m^2 | sum m d and sum (I_c + m d^2) of forearm, hand and load        |
+/// | a, g   | -                    | m/s^2   | acceleration of the elbow; free fall                                |
+/// | theta  | elevation_rad        | rad     | inclination of u from straight down, positive forward               |
+/// | M      | moment_N_m           | N m     | muscle moment, flexion positive                                     |
+/// | A, B   | -                    | m/s^2, 1/s^2 | A = n . (u x (a - g)),  B = n . (u x u'')                      |
 ///
-/// Angular momentum about the moving elbow, for bodies along one line (their rotation about that line, and
-/// forces of the forearm's own twist, are left out):
+/// Angular momentum about the moving elbow, for bodies along one line (their rotation about that line, and forces
+/// of the forearm's own twist, are left out):
 ///   M = n . [ I u x u'' + S u x (a - g) ] = I B + S A       (Winter 2009, ch. 5; Zatsiorsky 2002, ch. 5)
-/// The hinge's axis is not recorded: n is taken horizontal and perpendicular to the vertical plane of the
-/// forearm. Near the vertical, where that plane is lost, it is held by the trial's mean plane:
+/// The hinge's axis is not recorded: n is taken horizontal and perpendicular to the vertical plane of the forearm.
+/// Near the vertical, where that plane is lost, it is held by the trial's mean plane:
 ///   n = h x up,   h ~ (u_h . h_mean) u_h + 0.05 h_mean,   u_h the horizontal part of u.
 /// The product makes h continuous and forward also where the forearm passes the vertical or hangs sideways.
 ///

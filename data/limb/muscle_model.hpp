@@ -20,8 +20,8 @@ namespace brachium::limb {
 
 /// Which inputs a model uses and which derivatives it gives.
 struct ModelTraits {
-  std::string rung;           ///< place on the ladder of fidelity: "hill.rigid", "hill.elastic", "fem.fine", ...
-  std::size_t state_size = 0; ///< n_x
+  std::string rung;  ///< place on the ladder of fidelity: "hill.rigid", "hill.elastic", "fem.fine", ...
+  std::size_t state_size = 0;  ///< n_x
   bool uses_qdot = false;
   bool gives_dmoment_dq = false;
   bool gives_dmoment_dactivation = false;
@@ -29,13 +29,13 @@ struct ModelTraits {
 };
 
 struct Evaluation {
-  Eigen::VectorXd force;                  ///< n_m [N]
-  Eigen::MatrixXd moment_arm;             ///< n_q x n_m [m]
-  Eigen::VectorXd moment;                 ///< n_q [N m]
-  Eigen::MatrixXd dmoment_dq;             ///< n_q x n_q [N m/rad], empty if not given
-  Eigen::MatrixXd dmoment_dactivation;    ///< n_q x n_m [N m], empty if not given
-  Eigen::VectorXd state_rate;             ///< n_x
-  Eigen::VectorXd error_bound;            ///< n_q [N m], numerical error of the moment; empty if not given
+  Eigen::VectorXd force;                ///< n_m [N]
+  Eigen::MatrixXd moment_arm;           ///< n_q x n_m [m]
+  Eigen::VectorXd moment;               ///< n_q [N m]
+  Eigen::MatrixXd dmoment_dq;           ///< n_q x n_q [N m/rad], empty if not given
+  Eigen::MatrixXd dmoment_dactivation;  ///< n_q x n_m [N m], empty if not given
+  Eigen::VectorXd state_rate;           ///< n_x
+  Eigen::VectorXd error_bound;          ///< n_q [N m], numerical error of the moment; empty if not given
 };
 
 /// A set of muscles over a set of coordinates. Const and safe to call from several threads.
@@ -48,8 +48,9 @@ class MuscleModel {
 
   /// Throws data::InputError for arguments outside the model's domain (activation outside [0, 1], an angle
   /// outside the geometry's range, wrong sizes) and data::ConvergenceFailure naming the muscle otherwise.
-  virtual void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::VectorXd& activation,
-                        const Eigen::VectorXd& state, Evaluation& out) const = 0;
+  virtual void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
+                        const Eigen::VectorXd& activation, const Eigen::VectorXd& state,
+                        Evaluation& out) const = 0;
 };
 
 }  // namespace brachium::limb

@@ -12,17 +12,23 @@ namespace {
 
 void check_knots(std::span<const double> x, std::span<const double> y) {
   if (x.size() < 2 || x.size() != y.size()) {
-    throw InputError("bad-curve", fmt::format("a curve needs at least two points and as many x as y, got {} and {}", x.size(), y.size()));
+    throw InputError("bad-curve",
+                     fmt::format("a curve needs at least two points and as many x as y, got {} and {}",
+                                 x.size(), y.size()));
   }
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) throw InputError("bad-curve", fmt::format("point {} of a curve is not finite", i));
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i]))
+      throw InputError("bad-curve", fmt::format("point {} of a curve is not finite", i));
     if (i > 0 && !(x[i] > x[i - 1])) {
-      throw InputError("bad-curve", fmt::format("x must increase strictly: point {} has {}, after {}", i, x[i], x[i - 1]));
+      throw InputError("bad-curve",
+                       fmt::format("x must increase strictly: point {} has {}, after {}", i, x[i], x[i - 1]));
     }
   }
 }
 
-double sign(double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; }
+double sign(double v) {
+  return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0;
+}
 
 // One-sided three-point end slope that keeps monotonicity (Fritsch & Butland; as in Moler's pchip).
 double end_slope(double h0, double h1, double d0, double d1) {
@@ -34,8 +40,13 @@ double end_slope(double h0, double h1, double d0, double d1) {
 
 }  // namespace
 
-PiecewiseCubic::PiecewiseCubic(std::span<const double> x, std::span<const double> y, std::vector<double> slope)
-    : x_(x.begin(), x.end()), y_(y.begin(), y.end()), slope_(std::move(slope)), c2_(x.size() - 1), c3_(x.size() - 1) {
+PiecewiseCubic::PiecewiseCubic(std::span<const double> x, std::span<const double> y,
+                               std::vector<double> slope)
+    : x_(x.begin(), x.end()),
+      y_(y.begin(), y.end()),
+      slope_(std::move(slope)),
+      c2_(x.size() - 1),
+      c3_(x.size() - 1) {
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     const double h = x_[i + 1] - x_[i];
     const double d = (y_[i + 1] - y_[i]) / h;
@@ -44,9 +55,11 @@ PiecewiseCubic::PiecewiseCubic(std::span<const double> x, std::span<const double
   }
 }
 
-PiecewiseCubic PiecewiseCubic::hermite(std::span<const double> x, std::span<const double> y, std::span<const double> slope) {
+PiecewiseCubic PiecewiseCubic::hermite(std::span<const double> x, std::span<const double> y,
+                                       std::span<const double> slope) {
   check_knots(x, y);
-  if (slope.size() != x.size()) throw InputError("bad-curve", "a Hermite curve needs one slope for each point");
+  if (slope.size() != x.size())
+    throw InputError("bad-curve", "a Hermite curve needs one slope for each point");
   return PiecewiseCubic(x, y, {slope.begin(), slope.end()});
 }
 
@@ -125,7 +138,8 @@ CurveValue PiecewiseCubic::operator()(double x) const {
   if (x > x_.back()) return {y_.back() + slope_.back() * (x - x_.back()), slope_.back()};
   const std::size_t i = interval(x);
   const double t = x - x_[i];
-  return {y_[i] + t * (slope_[i] + t * (c2_[i] + t * c3_[i])), slope_[i] + t * (2.0 * c2_[i] + t * 3.0 * c3_[i])};
+  return {y_[i] + t * (slope_[i] + t * (c2_[i] + t * c3_[i])),
+          slope_[i] + t * (2.0 * c2_[i] + t * 3.0 * c3_[i])};
 }
 
 double PiecewiseCubic::curvature(double x) const {

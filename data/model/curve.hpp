@@ -31,7 +31,8 @@ class PiecewiseCubic {
   /// (`spline`): the third derivative at each end is that of the cubic through the four end points. >= 2 knots.
   static PiecewiseCubic forsythe(std::span<const double> x, std::span<const double> y);
   /// Cubic Hermite with given knot slopes.
-  static PiecewiseCubic hermite(std::span<const double> x, std::span<const double> y, std::span<const double> slope);
+  static PiecewiseCubic hermite(std::span<const double> x, std::span<const double> y,
+                                std::span<const double> slope);
 
   CurveValue operator()(double x) const;
   /// Second derivative (piecewise; right-continuous at knots).

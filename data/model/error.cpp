@@ -11,9 +11,12 @@ namespace {
 
 std::string_view name_of(Severity severity) {
   switch (severity) {
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    case Severity::error: return "error";
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
   }
   return "error";
 }
@@ -67,7 +70,8 @@ std::string render(const Diagnostic& d) {
             const auto at = static_cast<std::size_t>(i);
             margin += at < w.text.size() && w.text[at] == '\t' ? '\t' : ' ';
           }
-          text += fmt::format("{} | {}{}", pad, margin, std::string(static_cast<std::size_t>(std::max(1, w.length)), '^'));
+          text += fmt::format("{} | {}{}", pad, margin,
+                              std::string(static_cast<std::size_t>(std::max(1, w.length)), '^'));
           text += d.help.empty() ? "\n" : " " + d.help + "\n";
           return text;
         }
@@ -90,11 +94,13 @@ InputError::InputError(std::vector<Diagnostic> diagnostics)
     : std::runtime_error(summary(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
 InputError::InputError(std::string code, std::string message, std::string help)
-    : InputError(Diagnostic{Severity::error, std::move(code), std::move(message), std::nullopt, std::move(help)}) {}
+    : InputError(
+          Diagnostic{Severity::error, std::move(code), std::move(message), std::nullopt, std::move(help)}) {}
 
 ConvergenceFailure::ConvergenceFailure(Details details)
-    : std::runtime_error(fmt::format("{}: {} (after {} iterations, residual {:.3g}, step {:.3g}{}{})", details.where,
-                                     details.reason, details.iterations, details.residual_norm, details.step_norm,
+    : std::runtime_error(fmt::format("{}: {} (after {} iterations, residual {:.3g}, step {:.3g}{}{})",
+                                     details.where, details.reason, details.iterations, details.residual_norm,
+                                     details.step_norm,
                                      details.worst.empty() ? "" : ", worst: ", details.worst)),
       details_(std::move(details)) {}
 
@@ -115,8 +121,10 @@ std::string suggest(std::string_view word, std::span<const std::string> candidat
   if (const auto nearest = nearest_name(word, candidates)) return fmt::format("did you mean `{}`?", *nearest);
   if (candidates.empty()) return {};
   const std::size_t shown = std::min<std::size_t>(candidates.size(), 12);
-  return fmt::format("known: {}{}", fmt::join(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-                     shown < candidates.size() ? ", ..." : "");
+  return fmt::format(
+      "known: {}{}",
+      fmt::join(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+      shown < candidates.size() ? ", ..." : "");
 }
 
 }  // namespace brachium::data

@@ -25,10 +25,10 @@ struct SourceSpan {
 /// One finding: what, where, and what to do about it.
 struct Diagnostic {
   Severity severity = Severity::error;
-  std::string code;     ///< stable kebab-case identifier, e.g. "unknown-key"; `brachium explain CODE` tells more
+  std::string code;  ///< stable kebab-case identifier, e.g. "unknown-key"; `brachium explain CODE` tells more
   std::string message;  ///< one sentence, names the offending thing in backticks
   std::optional<SourceSpan> where;
-  std::string help;     ///< what to do, e.g. "did you mean `lowpass_hz`?"; may be empty
+  std::string help;  ///< what to do, e.g. "did you mean `lowpass_hz`?"; may be empty
 };
 
 /// The finding as a terminal shows it: code and message, `--> file:line:column`, the line underlined, the help.

@@ -23,7 +23,7 @@ struct ActivationParameters {
   double delay_s = 0.040;            ///< electromechanical delay d >= 0
   double time_constant_1_s = 0.015;  ///< tau1 > 0
   double time_constant_2_s = 0.035;  ///< tau2 > 0
-  double shape = -1.5;               ///< A of a = (exp(A u) - 1)/(exp(A) - 1); -3 < A < 0 (piecewise: 0 < A <= 0.12)
+  double shape = -1.5;  ///< A of a = (exp(A u) - 1)/(exp(A) - 1); -3 < A < 0 (piecewise: 0 < A <= 0.12)
 };
 
 /// Muscle-tendon length and moment arm as functions of one coordinate.
@@ -34,22 +34,23 @@ struct PathGeometry {
     table        ///< knots angle_rad[i] -> length[i], moment_arm[i], monotone/Hermite interpolation
   };
   Kind kind = Kind::none;
-  std::string coordinate;          ///< the coordinate q it depends on
-  std::vector<double> angle_rad;   ///< table only: knots, strictly increasing
-  std::vector<double> length_m;    ///< coefficients or values; may be empty if only the moment arm is known and
-                                   ///< a reference length is given
+  std::string coordinate;         ///< the coordinate q it depends on
+  std::vector<double> angle_rad;  ///< table only: knots, strictly increasing
+  std::vector<double> length_m;  ///< coefficients or values; may be empty if only the moment arm is known and
+                                 ///< a reference length is given
   std::vector<double> moment_arm_m;  ///< coefficients or values; r = -dL/dq
   double reference_length_m = 0.0;   ///< L at reference_angle_rad, used when length_m is empty
   double reference_angle_rad = 0.0;
-  double consistency_tolerance_m = 1e-3;  ///< largest |r + dL/dq| accepted where length and moment arm are both given
+  double consistency_tolerance_m =
+      1e-3;  ///< largest |r + dL/dq| accepted where length and moment arm are both given
 };
 
 /// How a muscle gets its excitation: e = sum_k weight_k * channel_k.
 struct MuscleDrive {
   enum class Kind {
-    channels,   ///< linear map of recorded channels
-    rule,       ///< named rule over other muscles' excitations
-    undriven    ///< no excitation: the muscle is passive and is reported as such
+    channels,  ///< linear map of recorded channels
+    rule,      ///< named rule over other muscles' excitations
+    undriven   ///< no excitation: the muscle is passive and is reported as such
   };
   Kind kind = Kind::undriven;
   std::map<std::string, double> channels;  ///< channel -> weight (>= 0)

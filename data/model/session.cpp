@@ -27,7 +27,8 @@ std::size_t index_of(const Items& items, const std::string& wanted, NameOf name_
   throw InputError(code, fmt::format("{} `{}`", what, wanted), suggest(wanted, known));
 }
 
-std::size_t signal_at(const auto& signals, const std::string& trial, const std::string& wanted, auto name_of) {
+std::size_t signal_at(const auto& signals, const std::string& trial, const std::string& wanted,
+                      auto name_of) {
   return index_of(signals, wanted, name_of, "missing-signal", fmt::format("trial `{}` has no signal", trial));
 }
 
@@ -46,7 +47,8 @@ TrialKind parse_trial_kind(const std::string& name) {
     if (name == n) return k;
     known.emplace_back(n);
   }
-  throw InputError("unknown-trial-kind", fmt::format("`{}` is not a kind of trial", name), suggest(name, known));
+  throw InputError("unknown-trial-kind", fmt::format("`{}` is not a kind of trial", name),
+                   suggest(name, known));
 }
 
 std::size_t TrialInfo::signal_index(const std::string& signal) const {
@@ -58,7 +60,8 @@ bool TrialInfo::has_signal(const std::string& signal) const {
 }
 
 std::size_t SessionInfo::trial_index(const std::string& trial) const {
-  return index_of(trials, trial, [](const TrialInfo& t) { return t.name; }, "missing-trial", "the session has no trial");
+  return index_of(
+      trials, trial, [](const TrialInfo& t) { return t.name; }, "missing-trial", "the session has no trial");
 }
 
 const Signal& Trial::signal(const std::string& signal) const {
@@ -66,7 +69,8 @@ const Signal& Trial::signal(const std::string& signal) const {
 }
 
 const Trial& Session::trial(const std::string& wanted) const {
-  return trials[index_of(trials, wanted, [](const Trial& t) { return t.name; }, "missing-trial", "the session has no trial")];
+  return trials[index_of(
+      trials, wanted, [](const Trial& t) { return t.name; }, "missing-trial", "the session has no trial")];
 }
 
 std::vector<double> SessionSource::read(std::size_t trial, std::size_t signal) const {
@@ -93,7 +97,8 @@ void SessionSink::write(const std::string& trial, const Signal& signal) {
 
 MemorySession::MemorySession(Session session) : session_(std::move(session)), info_(info_of(session_)) {}
 
-void MemorySession::read(std::size_t trial, std::size_t signal, std::size_t first, std::span<double> out) const {
+void MemorySession::read(std::size_t trial, std::size_t signal, std::size_t first,
+                         std::span<double> out) const {
   const std::vector<double>& samples = session_.trials.at(trial).signals.at(signal).samples;
   if (first > samples.size() || out.size() > samples.size() - first) {
     throw std::out_of_range("MemorySession::read past the end of a signal");
@@ -152,7 +157,8 @@ Session load(const SessionSource& source) {
   for (std::size_t t = 0; t < info.trials.size(); ++t) {
     const TrialInfo& trial = info.trials[t];
     session.trials.push_back({trial.name, trial.kind, trial.conditions, trial.attributes, {}});
-    for (std::size_t s = 0; s < trial.signals.size(); ++s) session.trials.back().signals.push_back(source.signal(t, s));
+    for (std::size_t s = 0; s < trial.signals.size(); ++s)
+      session.trials.back().signals.push_back(source.signal(t, s));
   }
   return session;
 }
@@ -186,8 +192,8 @@ bool matches(const std::string& pattern, const std::string& name) {
   return p == pattern.size();
 }
 
-std::vector<std::string> match_names(std::span<const std::string> patterns, std::span<const std::string> names,
-                                     const std::string& what) {
+std::vector<std::string> match_names(std::span<const std::string> patterns,
+                                     std::span<const std::string> names, const std::string& what) {
   std::vector<bool> taken(names.size(), false);
   std::vector<Diagnostic> mistakes;
   for (const std::string& pattern : patterns) {
@@ -196,8 +202,8 @@ std::vector<std::string> match_names(std::span<const std::string> patterns, std:
       if (matches(pattern, names[i])) taken[i] = any = true;
     }
     if (!any) {
-      mistakes.push_back({Severity::error, "no-match", fmt::format("no {} matches `{}`", what, pattern), std::nullopt,
-                          suggest(pattern, names)});
+      mistakes.push_back({Severity::error, "no-match", fmt::format("no {} matches `{}`", what, pattern),
+                          std::nullopt, suggest(pattern, names)});
     }
   }
   if (!mistakes.empty()) throw InputError(std::move(mistakes));

@@ -24,7 +24,7 @@ TrialKind parse_trial_kind(const std::string& name);  ///< throws InputError("un
 struct TrialInfo {
   std::string name;  ///< unique in its session
   TrialKind kind = TrialKind::test;
-  std::map<std::string, double> conditions;       ///< numbers known of the trial, unit in the name: "load_mass_kg"
+  std::map<std::string, double> conditions;  ///< numbers known of the trial, unit in the name: "load_mass_kg"
   std::map<std::string, std::string> attributes;  ///< texts known of the trial
   std::vector<SignalInfo> signals;
 
@@ -67,7 +67,8 @@ class SessionSource {
   virtual ~SessionSource() = default;
   virtual const SessionInfo& info() const = 0;
   /// Samples [first, first + out.size()) of a signal.
-  virtual void read(std::size_t trial, std::size_t signal, std::size_t first, std::span<double> out) const = 0;
+  virtual void read(std::size_t trial, std::size_t signal, std::size_t first,
+                    std::span<double> out) const = 0;
 
   std::vector<double> read(std::size_t trial, std::size_t signal) const;
   Signal signal(std::size_t trial, std::size_t signal) const;
@@ -79,7 +80,7 @@ class SessionSource {
 class SessionSink {
  public:
   virtual ~SessionSink() = default;
-  virtual void begin(const SessionInfo& session) = 0;   ///< subject, anthropometry, attributes; trials ignored
+  virtual void begin(const SessionInfo& session) = 0;  ///< subject, anthropometry, attributes; trials ignored
   virtual void begin_trial(const TrialInfo& trial) = 0;  ///< all but signals
   /// Announces a signal of info.count samples; samples follow by write_samples in any order of chunks.
   virtual void begin_signal(const std::string& trial, const SignalInfo& info) = 0;
@@ -123,8 +124,8 @@ void store(const Session& session, SessionSink& sink);
 
 /// Names that match any of the shell patterns (`*`, `?`); every pattern must match at least one name,
 /// else InputError("no-match"). The order is that of `names`.
-std::vector<std::string> match_names(std::span<const std::string> patterns, std::span<const std::string> names,
-                                     const std::string& what);
+std::vector<std::string> match_names(std::span<const std::string> patterns,
+                                     std::span<const std::string> names, const std::string& what);
 /// Does `name` match the shell pattern (`*` any run, `?` one character)?
 bool matches(const std::string& pattern, const std::string& name);
 

@@ -47,7 +47,8 @@ Quantity parse_quantity(const std::string& name) {
     if (name == n) return q;
     known.emplace_back(n);
   }
-  throw InputError("unknown-quantity", fmt::format("`{}` is not a quantity a signal can have", name), suggest(name, known));
+  throw InputError("unknown-quantity", fmt::format("`{}` is not a quantity a signal can have", name),
+                   suggest(name, known));
 }
 
 }  // namespace brachium::data

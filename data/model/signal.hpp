@@ -37,15 +37,16 @@ Quantity parse_quantity(const std::string& name);
 
 /// Everything about a signal but its samples.
 struct SignalInfo {
-  std::string name;            ///< unique in its trial
+  std::string name;  ///< unique in its trial
   Quantity quantity = Quantity::other;
-  std::string unit;            ///< unit of the stored samples: SI inside Brachium ("V", "rad", "N m", "1")
-  double rate_hz = 0.0;        ///< [Hz] > 0
-  double start_time_s = 0.0;   ///< [s] time of sample 0 on the trial's clock
-  std::size_t count = 0;       ///< number of samples
-  std::string muscle;          ///< muscle the signal belongs to, or empty
-  std::string coordinate;      ///< coordinate (joint angle) the signal belongs to, or empty
-  std::map<std::string, std::string> attributes;  ///< what was done to it: filters, resampling, source file, ...
+  std::string unit;           ///< unit of the stored samples: SI inside Brachium ("V", "rad", "N m", "1")
+  double rate_hz = 0.0;       ///< [Hz] > 0
+  double start_time_s = 0.0;  ///< [s] time of sample 0 on the trial's clock
+  std::size_t count = 0;      ///< number of samples
+  std::string muscle;         ///< muscle the signal belongs to, or empty
+  std::string coordinate;     ///< coordinate (joint angle) the signal belongs to, or empty
+  std::map<std::string, std::string>
+      attributes;  ///< what was done to it: filters, resampling, source file, ...
 
   double time_s(std::size_t i) const { return start_time_s + static_cast<double>(i) / rate_hz; }
   double end_time_s() const { return count == 0 ? start_time_s : time_s(count - 1); }

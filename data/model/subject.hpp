@@ -22,9 +22,9 @@ struct ParameterVerdict {
   double standard_error = 0.0;  ///< of the fit; infinite values are written as the text "not identified"
   double interval_lower = 0.0;  ///< 95 % interval
   double interval_upper = 0.0;
-  double bias = 0.0;            ///< estimated bias from errors in the excitation, already removed where corrected
-  std::string verdict;          ///< "identified", "AT LOWER BOUND", "AT UPPER BOUND", "NOT IDENTIFIED"
-  std::string remark;           ///< e.g. "correlated 0.98 with BRA strength"
+  double bias = 0.0;    ///< estimated bias from errors in the excitation, already removed where corrected
+  std::string verdict;  ///< "identified", "AT LOWER BOUND", "AT UPPER BOUND", "NOT IDENTIFIED"
+  std::string remark;   ///< e.g. "correlated 0.98 with BRA strength"
 };
 
 struct SubjectMuscle {
@@ -37,7 +37,7 @@ struct SubjectMuscle {
 struct Subject {
   std::string name;
   std::vector<SubjectMuscle> muscles;
-  std::map<std::string, double> channel_gains;    ///< factor on the normalised excitation of a channel
+  std::map<std::string, double> channel_gains;  ///< factor on the normalised excitation of a channel
   /// Model choices the parameters are valid with: "curves", "tendon", "activation_form", "nonlinearity",
   /// "recursion_rate_hz" (recursive form only), ...
   std::map<std::string, std::string> model;

@@ -18,9 +18,9 @@ struct Table {
   std::vector<Column> columns;  ///< all of the same length
 
   std::size_t rows() const;
-  const Column& column(const std::string& name) const;                     ///< throws InputError("missing-column")
-  const std::vector<double>& numbers(const std::string& name) const;       ///< throws if text
-  const std::vector<std::string>& texts(const std::string& name) const;    ///< throws if numbers
+  const Column& column(const std::string& name) const;                ///< throws InputError("missing-column")
+  const std::vector<double>& numbers(const std::string& name) const;  ///< throws if text
+  const std::vector<std::string>& texts(const std::string& name) const;  ///< throws if numbers
 };
 
 }  // namespace brachium::data

@@ -19,9 +19,9 @@ struct Entry {
   double to_si;
 };
 
-constexpr double standard_gravity = 9.80665;        // m/s^2, CGPM 1901
-constexpr double pound = 0.45359237;                // kg, international avoirdupois pound, exact
-constexpr double degree = std::numbers::pi / 180.0; // rad
+constexpr double standard_gravity = 9.80665;         // m/s^2, CGPM 1901
+constexpr double pound = 0.45359237;                 // kg, international avoirdupois pound, exact
+constexpr double degree = std::numbers::pi / 180.0;  // rad
 
 constexpr std::array entries{
     Entry{"V", "voltage", "V", 1.0},
@@ -43,10 +43,10 @@ constexpr std::array entries{
     Entry{"deg/s^2", "angular acceleration", "rad/s^2", degree},
     Entry{"N m", "torque", "N m", 1.0},
     Entry{"mN m", "torque", "N m", 1e-3},
-    Entry{"ft lbf", "torque", "N m", 0.3048 * pound * standard_gravity},
+    Entry{"ft lbf", "torque", "N m", 0.3048 * pound* standard_gravity},
     Entry{"N", "force", "N", 1.0},
     Entry{"kN", "force", "N", 1e3},
-    Entry{"lbf", "force", "N", pound * standard_gravity},
+    Entry{"lbf", "force", "N", pound* standard_gravity},
     Entry{"kg", "mass", "kg", 1.0},
     Entry{"g", "mass", "kg", 1e-3},
     Entry{"lb", "mass", "kg", pound},
@@ -77,22 +77,22 @@ std::string canonical(std::string_view symbol) {
       s.replace(at, what.size(), by);
     }
   };
-  replace_all("\xC2\xB5", "u");      // micro sign
-  replace_all("\xCE\xBC", "u");      // Greek mu
-  replace_all("\xC2\xB0", "deg");    // degree sign
-  replace_all("\xC2\xB7", " ");      // middle dot
-  replace_all("\xC2\xB2", "^2");     // superscript two
+  replace_all("\xC2\xB5", "u");    // micro sign
+  replace_all("\xCE\xBC", "u");    // Greek mu
+  replace_all("\xC2\xB0", "deg");  // degree sign
+  replace_all("\xC2\xB7", " ");    // middle dot
+  replace_all("\xC2\xB2", "^2");   // superscript two
   replace_all("*", " ");
   replace_all("\xE2\x8B\x85", " ");  // dot operator
   const auto first = s.find_first_not_of(" \t[](\"");
   const auto last = s.find_last_not_of(" \t[])\"");
   s = first == std::string::npos ? std::string{} : s.substr(first, last - first + 1);
   static const std::array<std::pair<std::string_view, std::string_view>, 22> aliases{{
-      {"Nm", "N m"},         {"N.m", "N m"},      {"N-m", "N m"},        {"mNm", "mN m"},
-      {"ft-lb", "ft lbf"},   {"ft lb", "ft lbf"}, {"degree", "deg"},     {"degrees", "deg"},
-      {"radian", "rad"},     {"radians", "rad"},  {"degrees/s", "deg/s"},{"m/s2", "m/s^2"},
-      {"deg/s2", "deg/s^2"}, {"rad/s2", "rad/s^2"},{"kg m2", "kg m^2"},  {"sec", "s"},
-      {"seconds", "s"},      {"volt", "V"},       {"volts", "V"},        {"lbs", "lb"},
+      {"Nm", "N m"},         {"N.m", "N m"},        {"N-m", "N m"},         {"mNm", "mN m"},
+      {"ft-lb", "ft lbf"},   {"ft lb", "ft lbf"},   {"degree", "deg"},      {"degrees", "deg"},
+      {"radian", "rad"},     {"radians", "rad"},    {"degrees/s", "deg/s"}, {"m/s2", "m/s^2"},
+      {"deg/s2", "deg/s^2"}, {"rad/s2", "rad/s^2"}, {"kg m2", "kg m^2"},    {"sec", "s"},
+      {"seconds", "s"},      {"volt", "V"},         {"volts", "V"},         {"lbs", "lb"},
       {"hz", "Hz"},          {"percent", "%"},
   }};
   for (const auto& [from, to] : aliases) {
@@ -106,21 +106,25 @@ std::string canonical(std::string_view symbol) {
 Unit parse_unit(std::string_view symbol) {
   const std::string wanted = canonical(symbol);
   for (const Entry& e : entries) {
-    if (e.symbol == wanted) return {std::string(symbol), std::string(e.dimension), std::string(e.si), e.to_si};
+    if (e.symbol == wanted)
+      return {std::string(symbol), std::string(e.dimension), std::string(e.si), e.to_si};
   }
   std::vector<std::string> known;
   for (const Entry& e : entries) {
     if (!e.symbol.empty()) known.emplace_back(e.symbol);
   }
-  throw InputError("unknown-unit", fmt::format("`{}` is not a unit Brachium knows", symbol), suggest(wanted, known));
+  throw InputError("unknown-unit", fmt::format("`{}` is not a unit Brachium knows", symbol),
+                   suggest(wanted, known));
 }
 
 double convert(double value, std::string_view from, std::string_view to) {
   const Unit a = parse_unit(from);
   const Unit b = parse_unit(to);
   if (a.dimension != b.dimension) {
-    throw InputError("wrong-unit", fmt::format("`{}` is a unit of {}, but a unit of {} is needed", from, a.dimension, b.dimension),
-                     fmt::format("give a value in `{}` or another unit of {}", to, b.dimension));
+    throw InputError(
+        "wrong-unit",
+        fmt::format("`{}` is a unit of {}, but a unit of {} is needed", from, a.dimension, b.dimension),
+        fmt::format("give a value in `{}` or another unit of {}", to, b.dimension));
   }
   return value * (a.to_si / b.to_si);
 }

@@ -20,8 +20,8 @@ struct Configuration {
   Eigen::VectorXd dofs;        ///< dof_count: displacements [m], continuous pressures [Pa] (tension positive)
   Eigen::VectorXd activation;  ///< by region, [0, 1]
   Eigen::MatrixXd multiplier;  ///< pressures_per_cell x n_cells [Pa], augmented Lagrange; empty: zero
-  Eigen::VectorXd dofs_before;  ///< of the last accepted state, for rates; empty: no rates
-  double inverse_dt = 0.0;      ///< 1/s, with dofs_before
+  Eigen::VectorXd dofs_before;         ///< of the last accepted state, for rates; empty: no rates
+  double inverse_dt = 0.0;             ///< 1/s, with dofs_before
   Eigen::VectorXd contact_multiplier;  ///< by contact point [Pa] (fem/contact/contact.hpp); empty: none
   double viscosity_pa_s = 0.0;  ///< S += 2 eta E_dot, with dofs_before: regularisation that vanishes at rest
 };

@@ -1,21 +1,19 @@
 #pragma once
-/// Four cells side by side in the lanes of a vector: what a kernel is given and what it returns. Plain
-/// memory, so that the same declarations serve every instruction set.
+/// Four cells side by side in the lanes of a vector: what a kernel is given and what it returns. Plain memory, so that
+/// the same declarations serve every instruction set.
 ///
-/// | symbol    | identifier     | unit | meaning                                                       | size
-/// |
+/// | symbol    | identifier     | unit | meaning                                                       | size                |
 /// |-----------|----------------|------|---------------------------------------------------------------|---------------------|
-/// | G         | gradient       | 1/m  | dN_a/dX_J at quadrature points, nodes padded to 4             | n_q
-/// n_pad 3         | | w         | weight         | m3   | quadrature weight times det dX/dxi | n_q | | u |
-/// displacement   | m    | of the cells' nodes                                           | n_pad 3 | | phi |
-/// pressure_shape | 1    | pressure functions                                            | n_q n_p | | M^-1
-/// | mass_inverse   | 1/m3 | inverse of int phi_m phi_n dV                                 | n_p n_p | |
-/// lambda, p | pressure       | Pa   | multiplier (discontinuous) or pressure dofs (continuous)      | n_p |
-/// | f         | force          | N    | int P : grad N_a                                              |
-/// n_pad 3             | | f_p       | constraint     | m3   | int phi (J - 1 - p / k) (continuous pressure)
-/// | n_p                 | | K         | tangent        | N/m  | d f_a / d u_b, a >= b: block a (a+1)/2 + b,
-/// entries 3 i + k    | n_pad (n_pad+1)/2 9 | | B         | coupling       | m2   | d f_p / d u_b, as 3 b + k
-/// (continuous pressure)               | n_p n_pad 3         |
+/// | G         | gradient       | 1/m  | dN_a/dX_J at quadrature points, nodes padded to 4             | n_q n_pad 3         |
+/// | w         | weight         | m3   | quadrature weight times det dX/dxi                            | n_q                 |
+/// | u         | displacement   | m    | of the cells' nodes                                           | n_pad 3             |
+/// | phi       | pressure_shape | 1    | pressure functions                                            | n_q n_p             |
+/// | M^-1      | mass_inverse   | 1/m3 | inverse of int phi_m phi_n dV                                 | n_p n_p             |
+/// | lambda, p | pressure       | Pa   | multiplier (discontinuous) or pressure dofs (continuous)      | n_p                 |
+/// | f         | force          | N    | int P : grad N_a                                              | n_pad 3             |
+/// | f_p       | constraint     | m3   | int phi (J - 1 - p / k) (continuous pressure)                 | n_p                 |
+/// | K         | tangent        | N/m  | d f_a / d u_b, a >= b: block a (a+1)/2 + b, entries 3 i + k    | n_pad (n_pad+1)/2 9 |
+/// | B         | coupling       | m2   | d f_p / d u_b, as 3 b + k (continuous pressure)               | n_p n_pad 3         |
 
 #include "fem/material/material.hpp"
 

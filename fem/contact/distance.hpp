@@ -1,14 +1,14 @@
 #pragma once
 /// Rigid bodies as signed distances: value, gradient and Hessian at a point, outside positive.
 ///
-/// Contact needs nothing else: with the gap g(x) = distance, the energy 1/2 eps <-g>^2 gives the force eps
-/// <-g> grad g and the symmetric tangent eps grad g (x) grad g - eps <-g> Hess g, whatever the shape.
+/// Contact needs nothing else: with the gap g(x) = distance, the energy 1/2 eps <-g>^2 gives the force eps <-g> grad g
+/// and the symmetric tangent eps grad g (x) grad g - eps <-g> Hess g, whatever the shape.
 ///
-/// | symbol | identifier | unit | meaning |
+/// | symbol | identifier | unit | meaning                                                                          |
 /// |--------|------------|------|----------------------------------------------------------------------------------|
-/// | g      | value      | m    | signed distance, negative inside | | n      | gradient   | 1    | outward
-/// normal of the closest point (of length 1 but for distance grids)         | | dn/dx  | hessian    | 1/m  |
-/// on a surface of principal curvatures k_i: sum k_i/(1 + k_i g) t_i (x) t_i        |
+/// | g      | value      | m    | signed distance, negative inside                                                 |
+/// | n      | gradient   | 1    | outward normal of the closest point (of length 1 but for distance grids)         |
+/// | dn/dx  | hessian    | 1/m  | on a surface of principal curvatures k_i: sum k_i/(1 + k_i g) t_i (x) t_i        |
 
 #include <Eigen/Core>
 #include <memory>

@@ -10,8 +10,8 @@ namespace brachium::fem {
 
 /// Values and derivatives at one local point.
 struct Shape {
-  Eigen::VectorXd value;         ///< n_nodes
-  Eigen::MatrixXd derivative;    ///< n_nodes x local dimension (3 in cells, 2 on faces)
+  Eigen::VectorXd value;       ///< n_nodes
+  Eigen::MatrixXd derivative;  ///< n_nodes x local dimension (3 in cells, 2 on faces)
 };
 
 /// N_a(xi) and dN_a/dxi of a cell. Hexahedra are serendipity for hex20, tensor products otherwise.

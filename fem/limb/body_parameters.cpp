@@ -83,25 +83,26 @@ const std::vector<Access>& accesses() {
       {{"tendon_origin_m", "m", "meshed tendon at the origin", 0.0, 0.15}, BRACHIUM_MEMBER(tendon_origin_m)},
       {{"tendon_insertion_m", "m", "meshed tendon at the insertion", 0.0, 0.15},
        BRACHIUM_MEMBER(tendon_insertion_m)},
-      {{"max_stress_pa", "Pa", "sigma_max", 5e4, 1e6}, BRACHIUM_MEMBER(material.max_stress_pa)},
-      {{"optimal_stretch", "1", "lambda_opt", 1.0, 1.8},
+      {{"max_stress_pa", "Pa", "sigma_max", 5e4, 1e6, true}, BRACHIUM_MEMBER(material.max_stress_pa)},
+      {{"optimal_stretch", "1", "lambda_opt", 1.0, 1.8, true},
        BRACHIUM_MEMBER(material.force_length.optimal_stretch)},
-      {{"ascending_width", "1", "dW of the active bell below its top", 0.1, 1.0},
+      {{"ascending_width", "1", "dW of the active bell below its top", 0.1, 1.0, true},
        BRACHIUM_MEMBER(material.force_length.ascending_width)},
-      {{"ascending_exponent", "1", "nu there", 1.5, 8.0},
+      {{"ascending_exponent", "1", "nu there", 1.5, 8.0, true},
        BRACHIUM_MEMBER(material.force_length.ascending_exponent)},
-      {{"descending_width", "1", "dW of the active bell above its top", 0.1, 1.0},
+      {{"descending_width", "1", "dW of the active bell above its top", 0.1, 1.0, true},
        BRACHIUM_MEMBER(material.force_length.descending_width)},
-      {{"descending_exponent", "1", "nu there", 1.5, 8.0},
+      {{"descending_exponent", "1", "nu there", 1.5, 8.0, true},
        BRACHIUM_MEMBER(material.force_length.descending_exponent)},
-      {{"ground_c1_pa", "Pa", "c1 of the isotropic ground", 1e3, 3e5},
+      {{"ground_c1_pa", "Pa", "c1 of the isotropic ground", 1e3, 3e5, true},
        BRACHIUM_MEMBER(material.muscle.c1_pa)},
-      {{"ground_c2_pa", "Pa", "c2 of the isotropic ground", 1e2, 1e5},
+      {{"ground_c2_pa", "Pa", "c2 of the isotropic ground", 1e2, 1e5, true},
        BRACHIUM_MEMBER(material.muscle.c2_pa)},
-      {{"passive_stretch", "1", "fibre stretch at which passive fibres bear 0.1 MPa (nominal)", 1.05, 2.0},
+      {{"passive_stretch", "1", "fibre stretch at which passive fibres bear 0.1 MPa (nominal)", 1.05, 2.0,
+        true},
        passive_stretch,
        [](MuscleBody& b, double v) { set_passive(b, v, b.material.muscle.c4); }},
-      {{"passive_exponent", "1", "c4 of passive fibres, at the same passive_stretch", 1.0, 60.0},
+      {{"passive_exponent", "1", "c4 of passive fibres, at the same passive_stretch", 1.0, 60.0, true},
        BRACHIUM_MEMBER(material.muscle.c4)},
   };
   return all;
@@ -135,6 +136,10 @@ double body_value(const MuscleBody& body, const std::string& name) {
 }
 
 void set_body_value(MuscleBody& body, const std::string& name, double value) {
+  if (body.shape && (name == "end_radius_norm" || name == "tendon_origin_m" || name == "tendon_insertion_m"))
+    throw data::InputError("limb-geometry",
+                           fmt::format("{}: an imported mesh has no parameter `{}`", body.name, name),
+                           "its length and greatest radius stretch it as a whole");
   if (name == "passive_exponent") return set_passive(body, passive_stretch(body), value);
   find(name).set(body, value);
 }

@@ -14,6 +14,7 @@ namespace brachium::fem {
 struct BodyParameter {
   std::string name, unit, meaning;
   double lower = 0.0, upper = 0.0;  ///< of what a muscle may plausibly be; fits take these bounds unless told
+  bool material = false;            ///< of the law; else of the geometry
 };
 
 /// belly_length_m, greatest_radius_m, pre_stretch, tendon lengths, max_stress_pa, the active bell, ground and

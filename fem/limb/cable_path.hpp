@@ -8,14 +8,15 @@
 ///   P(q) = d (sin(q + phi), -cos(q + phi)),   L(q) = |O T_O| + rho * arc + |T_P P|,   r(q) = -dL/dq = e . (P
 ///   x t)
 ///
-/// | symbol | identifier       | unit | meaning |
-/// |--------|------------------|------|--------------------------------------------------------------------------|
-/// | O      | origin_m         | m    | where the path begins, on the humerus | | d      | distance_m       |
-/// m    | of the insertion from the axis                                           | | phi    | offset_rad |
-/// rad  | of the insertion ahead of the forearm's long axis                        | | rho    | radius_m | m
-/// | of the obstacle: bone, and what lies between it and the tendon's centre  | | t      | pull             |
-/// 1    | unit direction in which the tendon pulls at P                            | (Obstacles in closed
-/// form: Garner & Pandy 2000, doi:10.1080/10255840008915251.)
+/// | symbol | identifier | unit | meaning                                                                 |
+/// |--------|------------|------|-------------------------------------------------------------------------|
+/// | O      | origin_m   | m    | where the path begins, on the humerus                                   |
+/// | d      | distance_m | m    | of the insertion from the axis                                          |
+/// | phi    | offset_rad | rad  | of the insertion ahead of the forearm's long axis                       |
+/// | rho    | radius_m   | m    | of the obstacle: bone, and what lies between it and the tendon's centre |
+/// | t      | pull       | 1    | unit direction in which the tendon pulls at P                           |
+///
+/// (Obstacles in closed form: Garner & Pandy 2000, doi:10.1080/10255840008915251.)
 
 #include <Eigen/Core>
 

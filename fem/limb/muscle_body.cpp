@@ -16,22 +16,7 @@ Eigen::Vector3d spatial(const Eigen::Vector2d& v) {
   return {v.x(), v.y(), 0.0};
 }
 
-/// Away from the humerus.
-Eigen::Vector3d outward(const MuscleBody& body) {
-  return Eigen::Vector3d::UnitX() * (body.cable.anterior ? 1.0 : -1.0);
-}
-
-/// The stress-free axis: begins at `from`, runs along `along` (distally).
-struct Axle {
-  Eigen::Vector3d from, along;
-};
-
-Axle stress_free_axis(const MuscleBody& body) {
-  return {spatial(body.cable.origin_m) + body.standoff_m * outward(body),
-          -end_place(body, body.reference_rad).pull};
-}
-
-data::Mesh stress_free_mesh(const MuscleBody& body) {
+data::Mesh spindle_mesh(const MuscleBody& body) {
   SpindleOptions o;
   o.type = cell_type(body.formulation);
   o.origin_tendon = {body.tendon_origin_m, body.tendon_cells};
@@ -41,18 +26,39 @@ data::Mesh stress_free_mesh(const MuscleBody& body) {
   o.flatness = body.flatness;
   o.section = body.section;
   o.transition_m = body.transition_m;
-  data::Mesh mesh = spindle(o);
-  const Axle axle = stress_free_axis(body);
-  Eigen::Matrix3d frame;  // the spindle's x across the plane of motion, y in it, z along
-  frame << Eigen::Vector3d::UnitZ(), axle.along.cross(Eigen::Vector3d::UnitZ()), axle.along;
-  for (Eigen::Index p = 0; p < mesh.points.cols(); ++p)
-    mesh.points.col(p) = axle.from + frame * mesh.points.col(p).eval();
-  const auto turn = [&](Eigen::MatrixXd& vectors) {
-    if (vectors.rows() == 3) vectors = (frame * vectors).eval();
-  };
-  if (mesh.point_fields.contains("fibre")) turn(mesh.point_fields.at("fibre"));
-  if (mesh.cell_fields.contains("fibre")) turn(mesh.cell_fields.at("fibre"));
+  o.aponeurosis_thickness_norm = body.aponeurosis.thickness_norm;
+  o.aponeurosis_cells = body.aponeurosis.cells;
+  o.aponeurosis_origin_norm = body.aponeurosis.origin_norm;
+  o.aponeurosis_insertion_norm = body.aponeurosis.insertion_norm;
+  return spindle(o);
+}
+
+/// What the body's own coordinates are scaled by.
+Eigen::Vector3d shape_scale(const MuscleBody& body) {
+  const double across =
+      *std::max_element(body.profile_m.begin(), body.profile_m.end()) / body.shape->greatest_radius_m;
+  return {across, across, body.belly_length_m / body.shape->length_m};
+}
+
+data::Mesh stress_free_mesh(const MuscleBody& body) {
+  data::Mesh mesh = body.shape ? *body.shape->mesh : spindle_mesh(body);
+  if (body.shape) move(mesh, shape_scale(body).asDiagonal(), Eigen::Vector3d::Zero());
+  const StressFreeAxis axis = stress_free_axis(body);
+  move(mesh, axis.frame, axis.from_m);
   return mesh;
+}
+
+/// Of the distal end's centre of rotation, which stays on the path.
+Eigen::Vector3d stress_free_end(const MuscleBody& body) {
+  const StressFreeAxis axis = stress_free_axis(body);
+  if (!body.shape) return axis.from_m + body.stress_free_length_m() * axis.along;
+  const Eigen::Vector3d end = shape_scale(body).cwiseProduct(body.shape->insertion_m);
+  return axis.from_m + axis.frame * end - body.shape->beside_path_m;
+}
+
+Eigen::Vector3d in_situ_origin(const MuscleBody& body) {
+  return spatial(body.cable.origin_m) +
+         (body.shape ? body.shape->origin_across_m : 0.0) * Eigen::Vector3d::UnitZ();
 }
 
 /// The range's first angle has a knot this far before it, in parts of the knots' spacing.
@@ -81,9 +87,8 @@ GuidedMotion distal_motion(const MuscleBody& body, const AngleRange& range) {
   const std::vector<double> a =
       knots(upwards ? range.upper_rad - body.reference_rad : body.reference_rad - range.lower_rad);
   const auto n = static_cast<Eigen::Index>(a.size());
-  const Axle axle = stress_free_axis(body);
   GuidedMotion motion;
-  motion.centre_m = axle.from + body.stress_free_length_m() * axle.along;
+  motion.centre_m = stress_free_end(body);
   motion.amplitude = Eigen::VectorXd::Map(a.data(), n);
   motion.place_m.resize(3, n);
   motion.angle_rad = Eigen::VectorXd::Zero(n);
@@ -108,15 +113,26 @@ GuidedMotion distal_motion(const MuscleBody& body, const AngleRange& range) {
 
 GuidedMotion proximal_motion(const MuscleBody& body) {
   GuidedMotion motion;
-  motion.centre_m = stress_free_axis(body).from;
+  motion.centre_m = stress_free_axis(body).from_m;
   motion.amplitude = Eigen::Vector2d(0.0, 1.0);
   motion.place_m.resize(3, 2);
-  motion.place_m << motion.centre_m, spatial(body.cable.origin_m);
+  motion.place_m << motion.centre_m, in_situ_origin(body);
   motion.angle_rad = Eigen::Vector2d::Zero();
   return motion;
 }
 
 }  // namespace
+
+Eigen::Vector3d outward(const MuscleBody& body) {
+  return Eigen::Vector3d::UnitX() * (body.cable.anterior ? 1.0 : -1.0);
+}
+
+StressFreeAxis stress_free_axis(const MuscleBody& body) {
+  const Eigen::Vector3d along = -end_place(body, body.reference_rad).pull;
+  StressFreeAxis axis{in_situ_origin(body) + body.standoff_m * outward(body), along, {}};
+  axis.frame << Eigen::Vector3d::UnitZ(), along.cross(Eigen::Vector3d::UnitZ()), along;
+  return axis;
+}
 
 double MuscleBody::cable_length_m() const {
   return CablePath(cable, reference_rad).length_m() - pre_stretch * stress_free_length_m();
@@ -160,10 +176,13 @@ void check(const MuscleBody& body, const AngleRange& range) {
   require(body.pre_stretch > 0.5 && body.pre_stretch < 2.0, "pre_stretch", body.pre_stretch, "in (0.5, 2)");
   require(body.standoff_m >= 0.0, "standoff_m", body.standoff_m, "0 or greater");
   require(body.bulk_modulus_pa > 0.0, "bulk_modulus_pa", body.bulk_modulus_pa, "greater than 0, or infinity");
-  if (body.fibres != "harmonic" && body.fibres != "mesh_lines") {
+  const std::string of_mesh = body.shape ? "mesh_field" : "mesh_lines";
+  if (body.fibres != "harmonic" && body.fibres != of_mesh) {
     throw data::InputError("limb-geometry", fmt::format("{}: fibres cannot be `{}`", body.name, body.fibres),
-                           "\"harmonic\" or \"mesh_lines\"");
+                           fmt::format("\"harmonic\" or \"{}\"", of_mesh));
   }
+  require(!body.shape || body.shape->length_m > 0.0, "length of the imported mesh [m]",
+          body.shape ? body.shape->length_m : 0.0, "greater than 0");
   require(body.cable_length_m() >= 0.0, "length of the rigid tendon that is left [m]", body.cable_length_m(),
           "0 or greater: shorten belly or tendons, lessen the pre-stretch, or move the origin away");
   const int n = static_cast<int>(std::ceil((range.upper_rad - range.lower_rad) / knot_spacing));
@@ -183,7 +202,8 @@ BuiltMuscle build(const MuscleBody& body, const AngleRange& range, std::shared_p
   } else {
     rules.fibres.push_back({{}, MeshFieldFibres{"fibre"}});
   }
-  rules.muscle.push_back({{}, std::string("gamma_M")});
+  if (!body.shape) rules.muscle.push_back({{}, std::string("gamma_M")});
+  if (body.shape && !body.shape->tendons.empty()) rules.muscle.push_back({body.shape->tendons, 0.0});
   Tissue tissue = build_tissue(*mesh, body.formulation, rules);
   built.directions = std::move(tissue.directions);
   built.harmonic = std::move(tissue.harmonic);

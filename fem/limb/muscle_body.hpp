@@ -2,7 +2,7 @@
 /// One continuum muscle over a hinge, as parameters; its mesh, its tissue and the motions of its two ends.
 ///
 /// The body is a spindle: belly, with meshed tendons where their length is not 0 (the muscle-tendon complex),
-/// without them the rigid-tendon variant. Its proximal end is fixed to the humerus. Its distal end sits on an
+/// without them the rigid-tendon variant; or an imported mesh (fem/limb/body_shape.hpp). Its proximal end is fixed to the humerus. Its distal end sits on an
 /// inextensible tendon (fem/limb/cable_path.hpp) that leads to the forearm: the end's centre stays at the
 /// cable's length from the insertion along the path, its face stays normal to the path.
 ///
@@ -21,11 +21,21 @@
 #include <vector>
 
 #include "fem/fibre/tissue.hpp"
+#include "fem/limb/body_shape.hpp"
 #include "fem/limb/cable_path.hpp"
 #include "fem/mesh/cylinder.hpp"
 #include "fem/solve/problem.hpp"
 
 namespace brachium::fem {
+
+/// Sheets of tendon tissue on the belly's surface that go on where the tendons end; 0 thick: none. They take
+/// the place of a transition.
+struct Aponeurosis {
+  double thickness_norm = 0.0;  ///< over the local radius
+  int cells = 1;                ///< through a sheet
+  double origin_norm = 0.5;     ///< share of the belly's length that each covers
+  double insertion_norm = 0.5;
+};
 
 struct MuscleBody {
   std::string name;
@@ -36,12 +46,17 @@ struct MuscleBody {
   double tendon_origin_m = 0.0;     ///< meshed; 0: rigid
   double tendon_insertion_m = 0.0;  ///< meshed; 0: rigid
   double transition_m = 0.0;        ///< length over which gamma_M rises beside meshed tendons
+  Aponeurosis aponeurosis;
+  /// Instead of the spindle, stretched to `belly_length_m` along and to the profile's greatest radius across;
+  /// null: the spindle.
+  std::shared_ptr<const BodyShape> shape;
   double pre_stretch = 1.0;
   double reference_rad = 0.0;
   double standoff_m = 0.0;  ///< of the stress-free body from its in-situ line, away from the humerus
   int belly_cells = 10, tendon_cells = 2;
   RoundSection section;
-  std::string fibres = "harmonic";  ///< "harmonic" or "mesh_lines"
+  std::string fibres =
+      "harmonic";  ///< "harmonic", or the mesh's field: "mesh_lines", "mesh_field" (imported)
   Formulation formulation = Formulation::q2_p1_discontinuous;
   MuscleTendon material;
   double bulk_modulus_pa = 0.0;  ///< infinity: incompressible, augmented Lagrange
@@ -53,6 +68,17 @@ struct MuscleBody {
 /// The muscle-tendon complex of a rigid-tendon muscle: ends of the rigid tendon meshed, their slack the
 /// length they are given, so that the belly is as long in situ as before.
 MuscleBody with_tendons(MuscleBody body, double origin_m, double insertion_m);
+
+/// Unit vector away from the humerus on the side of the path.
+Eigen::Vector3d outward(const MuscleBody& body);
+
+/// The stress-free axis, beside the bone: begins at `from_m`, runs along `along` (distally); `frame` turns the
+/// body's coordinates (x across the plane of motion, z along) into the arm's.
+struct StressFreeAxis {
+  Eigen::Vector3d from_m, along;
+  Eigen::Matrix3d frame;
+};
+StressFreeAxis stress_free_axis(const MuscleBody& body);
 
 /// Angles that a muscle is built for.
 struct AngleRange {

@@ -87,7 +87,7 @@ Eigen::Vector3d MuscleStates::away_from_bones(const Eigen::Vector3d& from,
   }
   const Eigen::Vector3d across = nearest.gradient - line.dot(nearest.gradient) / line.squaredNorm() * line;
   if (across.norm() > 1e-6) return across.normalized();
-  return Eigen::Vector3d::UnitX() * (body_.cable.anterior ? 1.0 : -1.0);
+  return outward(body_);
 }
 
 /// Stretched evenly to its in-situ length, at its own volume, and bowed aside as far as bones ask for.
@@ -134,7 +134,9 @@ void MuscleStates::impose_ends(const Phase& phase, SolveState& state) const {
 
 void MuscleStates::choose_bones(const std::vector<Bone>& bones) {
   const double radius = *std::max_element(body_.profile_m.begin(), body_.profile_m.end());
-  const double reach = (1.0 + options_.touch_margin_norm) * radius * std::max(1.0, body_.flatness);
+  const double widest = body_.shape ? body_.shape->reach_m * radius / body_.shape->greatest_radius_m
+                                    : radius * std::max(1.0, body_.flatness);
+  const double reach = (1.0 + options_.touch_margin_norm) * widest;
   for (const Bone& bone : bones) {
     check(bone.shape, bone.name);
     const double distance = least_axis_distance_m(body_, range_, bone.shape);

@@ -1,13 +1,13 @@
 #pragma once
 /// A muscle solved at any angle and activation, each state from the nearest one that is known.
 ///
-/// | symbol | identifier              | unit | meaning |
-/// |--------|-------------------------|------|------------------------------------------------------------------------|
-/// | F      | force_n                 | N    | |R|, R the resultant of the consistent nodal reactions at the
-/// distal end | | T      | tension_n               | N    | R . t, t the tendon's direction there | | L |
-/// length_m                | m    | centroid line from end to end, and the rigid tendon's path             |
-/// | M_q    | moment_n_m              | N m  | R . dp/dq + e . M dpsi/dq: work of the reactions on the end's
-/// motion   | | p, psi | place of the distal end | m, rad | fem/limb/muscle_body.hpp |
+/// | symbol | identifier              | unit   | meaning                                                                  |
+/// |--------|-------------------------|--------|--------------------------------------------------------------------------|
+/// | F      | force_n                 | N      | |R|, R the resultant of the consistent nodal reactions at the distal end |
+/// | T      | tension_n               | N      | R . t, t the tendon's direction there                                    |
+/// | L      | length_m                | m      | centroid line from end to end, and the rigid tendon's path               |
+/// | M_q    | moment_n_m              | N m    | R . dp/dq + e . M dpsi/dq: work of the reactions on the end's motion     |
+/// | p, psi | place of the distal end | m, rad | fem/limb/muscle_body.hpp                                                 |
 ///
 /// M_q is what a muscle with a frictionless rigid tendon exerts about the hinge, whatever the tendon wraps
 /// around: M_q = -dPi/dq of the muscle's energy, contact included. VRLA and VRLA+ take the wrench at the end

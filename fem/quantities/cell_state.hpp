@@ -4,15 +4,15 @@
 ///
 ///   P = F S + p cof F,   σ = P F' / J,   S = 2 dW/dC (+ η (C - C_n)/dt with viscosity)
 ///
-/// | symbol   | identifier          | unit | meaning |
-/// |----------|---------------------|------|----------------------------------------------------------------------------|
-/// | p        | pressure_pa         | Pa   | volumetric part, tension positive: continuous unknown, projected
-/// U'(θ) plus | |          |                     |      | multiplier, or U'(J) without pressure unknowns | |
-/// σ        | cauchy_pa           | Pa   | Cauchy stress | | P        | first_piola_pa      | Pa   | first
-/// Piola-Kirchhoff stress                                               | | λ        | fibre_stretch       |
-/// 1    | |F a0|                                                                     | | a        | fibre_now
-/// | 1    | F a0 / λ                                                                   |
+/// | symbol | identifier     | unit | meaning                            |
+/// |--------|----------------|------|------------------------------------|
+/// | p      | pressure_pa    | Pa   | volumetric part, tension positive  |
+/// | σ      | cauchy_pa      | Pa   | Cauchy stress                      |
+/// | P      | first_piola_pa | Pa   | first Piola-Kirchhoff stress       |
+/// | λ      | fibre_stretch  | 1    | |F a0|                             |
+/// | a      | fibre_now      | 1    | F a0 / λ                           |
 ///
+/// p is the continuous unknown, the projected U'(θ) plus multiplier, or U'(J) without pressure unknowns.
 /// Where a bulk modulus is infinite, p of the condensed formulations is the multiplier that the augmented
 /// Lagrange iteration ended with; it differs from the pressure in the last residual by less than penalty
 /// times volume tolerance.

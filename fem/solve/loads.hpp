@@ -14,7 +14,8 @@ namespace brachium::fem {
 class Loads {
  public:
   /// `stiffness_pa` and `cell_size_m` scale contact penalties that are not given.
-  Loads(const Problem& problem, const Discretisation& discretisation, double stiffness_pa, double cell_size_m);
+  Loads(const Problem& problem, const Discretisation& discretisation, double stiffness_pa,
+        double cell_size_m);
 
   /// Sum of all loads at the amplitudes (by condition) and displacements; by dof, global axes [N].
   Eigen::VectorXd force(const Eigen::VectorXd& amplitude, const Configuration& configuration) const;
@@ -23,7 +24,8 @@ class Loads {
   const Contacts& contacts() const { return contacts_; }
 
   /// ∂force/∂u of follower pressures and contacts, face by face; empty where nothing presses.
-  std::vector<FaceTangent> tangent(const Eigen::VectorXd& amplitude, const Configuration& configuration) const;
+  std::vector<FaceTangent> tangent(const Eigen::VectorXd& amplitude,
+                                   const Configuration& configuration) const;
 
  private:
   struct Dead {

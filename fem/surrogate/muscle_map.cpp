@@ -46,7 +46,7 @@ std::optional<Gradient> gradient_of(const MuscleState& s, MapOutput output) {
 const char* text(StateStability stability) {
   return stability == StateStability::stable     ? "stable"
          : stability == StateStability::unstable ? "unstable"
-                                            : "unknown";
+                                                 : "unknown";
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ class ChainPicture {
   std::string draw() const {
     const At size = extent();
     std::string out = fmt::format(
-        "<div class=\"scroll\" tabindex=\"0\"><svg class=\"chain\" role=\"img\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+        "<div class=\"scroll\" tabindex=\"0\"><svg class=\"chain\" role=\"img\" viewBox=\"0 0 {0} {1}\" "
+        "width=\"{0}\" "
         "height=\"{1}\" "
         "style=\"--w:{2}px\"><title>The chain of stages</title><desc>{3}</desc>",
         pixels(size.x), pixels(size.y), pixels(kLeastScale * size.x), escape(description()));

@@ -88,12 +88,12 @@ struct PlotRow {
 struct ViewRegion {
   std::string name{};
   std::vector<std::array<int, 3>> triangles{};  ///< points, counter-clockwise seen from outside
-  std::vector<std::array<int, 2>> edges{};      ///< pairs of points: sides of the mesh's cells on this surface
+  std::vector<std::array<int, 2>> edges{};  ///< pairs of points: sides of the mesh's cells on this surface
 };
 
 /// A quantity on the surface, drawn in colours.
 struct ViewField {
-  std::string label{};                       ///< with its unit, "fibre stress [kPa]"
+  std::string label{};                        ///< with its unit, "fibre stress [kPa]"
   std::vector<std::vector<double>> values{};  ///< by state: one a point; NaN where it has no meaning (grey)
 };
 

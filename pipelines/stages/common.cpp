@@ -24,7 +24,8 @@ OptionSpec option(std::string key, OptionType type, std::string doc) {
   return spec;
 }
 
-std::vector<std::size_t> candidates(const data::TrialInfo& trial, data::Quantity quantity, const std::string& coordinate) {
+std::vector<std::size_t> candidates(const data::TrialInfo& trial, data::Quantity quantity,
+                                    const std::string& coordinate) {
   std::vector<std::size_t> of_quantity = signals_of(trial, quantity), named;
   for (const std::size_t s : of_quantity) {
     if (trial.signals[s].coordinate == coordinate) named.push_back(s);
@@ -62,7 +63,8 @@ OptionSpec flag_option(std::string key, bool fallback, std::string doc) {
   return spec;
 }
 
-OptionSpec choice_option(std::string key, std::string fallback, std::vector<std::string> allowed, std::string doc) {
+OptionSpec choice_option(std::string key, std::string fallback, std::vector<std::string> allowed,
+                         std::string doc) {
   OptionSpec spec = option(std::move(key), OptionType::text, std::move(doc));
   spec.fallback = std::move(fallback);
   spec.allowed = std::move(allowed);
@@ -94,8 +96,9 @@ std::size_t trial_index(const StageData& data, const std::string& trial) {
     if (info.trials[t].name == trial) return t;
     known.push_back(info.trials[t].name);
   }
-  throw data::InputError("missing-trial", fmt::format("the output of stage `{}` has no trial `{}`", data.stage, trial),
-                         "let that stage work on the trial too (its `trials` patterns); " + data::suggest(trial, known));
+  throw data::InputError(
+      "missing-trial", fmt::format("the output of stage `{}` has no trial `{}`", data.stage, trial),
+      "let that stage work on the trial too (its `trials` patterns); " + data::suggest(trial, known));
 }
 
 const data::TrialInfo& trial_info(const StageData& data, const std::string& trial) {
@@ -110,22 +113,28 @@ std::vector<std::size_t> signals_of(const data::TrialInfo& trial, data::Quantity
   return found;
 }
 
-bool has_signal_of(const StageData& data, const std::string& trial, data::Quantity quantity, const std::string& coordinate) {
+bool has_signal_of(const StageData& data, const std::string& trial, data::Quantity quantity,
+                   const std::string& coordinate) {
   return !candidates(trial_info(data, trial), quantity, coordinate).empty();
 }
 
-data::Signal signal_of(const StageData& data, const std::string& trial, data::Quantity quantity, const std::string& coordinate) {
+data::Signal signal_of(const StageData& data, const std::string& trial, data::Quantity quantity,
+                       const std::string& coordinate) {
   const std::size_t t = trial_index(data, trial);
   const std::vector<std::size_t> found = candidates(data.signals->info().trials[t], quantity, coordinate);
   if (found.empty()) {
-    throw data::InputError("missing-signal", fmt::format("trial `{}` of `{}` has no signal of quantity `{}` for the coordinate `{}`", trial,
-                                                         data.stage, data::to_string(quantity), coordinate),
-                           "record or import it, or wire this input to the stage that makes it");
+    throw data::InputError(
+        "missing-signal",
+        fmt::format("trial `{}` of `{}` has no signal of quantity `{}` for the coordinate `{}`", trial,
+                    data.stage, data::to_string(quantity), coordinate),
+        "record or import it, or wire this input to the stage that makes it");
   }
   if (found.size() > 1) {
-    throw data::InputError("ambiguous-signal", fmt::format("trial `{}` of `{}` has {} signals of quantity `{}` for the coordinate `{}`", trial,
-                                                           data.stage, found.size(), data::to_string(quantity), coordinate),
-                           "name the coordinate of each in the session description");
+    throw data::InputError(
+        "ambiguous-signal",
+        fmt::format("trial `{}` of `{}` has {} signals of quantity `{}` for the coordinate `{}`", trial,
+                    data.stage, found.size(), data::to_string(quantity), coordinate),
+        "name the coordinate of each in the session description");
   }
   return data.signals->signal(t, found.front());
 }
@@ -139,7 +148,8 @@ void begin_output(const StageContext& context, const StageData& from, StageOutpu
   }
 }
 
-std::vector<std::string> select(const std::vector<std::string>& patterns, const std::vector<std::string>& names, const std::string& what) {
+std::vector<std::string> select(const std::vector<std::string>& patterns,
+                                const std::vector<std::string>& names, const std::string& what) {
   return patterns.empty() ? names : data::match_names(patterns, names, what);
 }
 
@@ -152,13 +162,19 @@ std::vector<std::string> names_of(const data::TrialInfo& trial, const std::vecto
 const data::Coordinate& coordinate_of(const data::Scene& scene, const std::string& name) {
   if (!name.empty()) return scene.coordinate(name);
   if (scene.coordinates.size() == 1) return scene.coordinates.front();
-  throw data::InputError("missing-coordinate", fmt::format("scene `{}` has {} coordinates; say which one is meant", scene.title, scene.coordinates.size()),
+  throw data::InputError("missing-coordinate",
+                         fmt::format("scene `{}` has {} coordinates; say which one is meant", scene.title,
+                                     scene.coordinates.size()),
                          "add `coordinate = \"...\"` to the stage");
 }
 
-std::string figure_text(const std::optional<double>& value, int decimals) { return value ? fmt::format("{:.{}f}", *value, decimals) : undefined_text; }
+std::string figure_text(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : undefined_text;
+}
 
-TableBuilder::TableBuilder(std::string title) { table_.title = std::move(title); }
+TableBuilder::TableBuilder(std::string title) {
+  table_.title = std::move(title);
+}
 
 TableBuilder& TableBuilder::number(const std::string& name, const std::string& unit) {
   table_.columns.push_back({name, unit, std::vector<double>{}});
@@ -171,12 +187,14 @@ TableBuilder& TableBuilder::text(const std::string& name) {
 }
 
 void TableBuilder::row(std::vector<std::variant<double, std::string>> values) {
-  if (values.size() != table_.columns.size()) throw std::logic_error("a row of table `" + table_.title + "` has the wrong number of values");
+  if (values.size() != table_.columns.size())
+    throw std::logic_error("a row of table `" + table_.title + "` has the wrong number of values");
   for (std::size_t c = 0; c < values.size(); ++c) {
     if (auto* numbers = std::get_if<std::vector<double>>(&table_.columns[c].values)) {
       numbers->push_back(std::get<double>(values[c]));
     } else {
-      std::get<std::vector<std::string>>(table_.columns[c].values).push_back(std::get<std::string>(std::move(values[c])));
+      std::get<std::vector<std::string>>(table_.columns[c].values)
+          .push_back(std::get<std::string>(std::move(values[c])));
     }
   }
 }
@@ -190,7 +208,8 @@ report::PlotRow trial_plots(const data::SessionSource& source, const std::vector
     const std::vector<std::size_t> signals = signals_of(source.info().trials[t], quantity);
     if (signals.empty()) continue;
     const bool volt = source.info().trials[t].signals[signals.front()].unit == "V";
-    report::Plot plot = report::make_time_plot(name, what, source, t, signals, unit.empty() && volt ? "µV" : unit);
+    report::Plot plot =
+        report::make_time_plot(name, what, source, t, signals, unit.empty() && volt ? "µV" : unit);
     for (std::size_t s = 0; s < plot.series.size(); ++s) plot.series[s].colour = static_cast<int>(s % 8);
     // Muscles that share an excitation lie on one another: one line with all their names.
     for (std::size_t s = 0; s < plot.series.size(); ++s) {

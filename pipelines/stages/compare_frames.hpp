@@ -1,14 +1,14 @@
 #pragma once
 /// What pipelines.compare holds against each other, frame by frame, and the tables it makes of that.
 ///
-/// | table              | rows |
+/// | table              | rows                                                                                       |
 /// |--------------------|--------------------------------------------------------------------------------------------|
-/// | scores             | models by trial, and pooled | | bias_by_angle      | models by interval of the
-/// joint angle (with `kinematics`)                                  | | bias_by_activation | models by
-/// interval of the mean activation of all muscles (with `activation`)               | | parts              |
-/// models by part, active and passive, each against that of the first model                   | | muscles |
-/// muscles of the models that tell them: their moment, and whether the continuum model has it | |
-/// same_muscles       | a model that lacks muscles against another one's moment of the muscles it has |
+/// | scores             | models by trial, and pooled                                                                |
+/// | bias_by_angle      | models by interval of the joint angle (with `kinematics`)                                  |
+/// | bias_by_activation | models by interval of the mean activation of all muscles (with `activation`)               |
+/// | parts              | models by part, active and passive, each against that of the first model                   |
+/// | muscles            | muscles of the models that tell them: their moment, and whether the continuum model has it |
+/// | same_muscles       | a model that lacks muscles against another one's moment of the muscles it has              |
 
 #include <map>
 #include <string>

@@ -26,7 +26,8 @@ void run(const StageContext& context, StageOutput& out) {
   const StageData& input = context.input("excitation");
   const StageData* with = context.maybe_input("subject");
   const data::Subject* subject = with ? &subject_of(*with) : nullptr;
-  const optimise::ModelChoice model = subject ? optimise::ModelChoice::from_map(subject->model) : activation_choice(*context.options);
+  const optimise::ModelChoice model =
+      subject ? optimise::ModelChoice::from_map(subject->model) : activation_choice(*context.options);
 
   begin_output(context, input, out);
   struct Count {
@@ -49,12 +50,15 @@ void run(const StageContext& context, StageOutput& out) {
     std::vector<double> mixed(grid.count), activation(grid.count);
     for (std::size_t m = 0; m < scene.muscles.size(); ++m) {
       const data::SceneMuscle& muscle = scene.muscles[m];
-      const data::ActivationParameters& parameters = subject ? subject->muscle(muscle.name).activation : muscle.activation;
+      const data::ActivationParameters& parameters =
+          subject ? subject->muscle(muscle.name).activation : muscle.activation;
       std::fill(mixed.begin(), mixed.end(), 0.0);
       for (std::size_t c = 0; c < drive.channels.size(); ++c) {
         const double weight = drive.weights(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(c));
         if (weight == 0.0) continue;
-        const auto channel = std::find_if(channels.begin(), channels.end(), [&](const data::Signal& s) { return s.info.name == drive.channels[c]; });
+        const auto channel = std::find_if(channels.begin(), channels.end(), [&](const data::Signal& s) {
+          return s.info.name == drive.channels[c];
+        });
         for (std::size_t k = 0; k < mixed.size(); ++k) mixed[k] += weight * channel->samples[k];
       }
       emg::check_parameters(model.activation, parameters, muscle.name);
@@ -70,12 +74,16 @@ void run(const StageContext& context, StageOutput& out) {
                                 {"time_constant_1_s", fmt::format("{:.6g}", parameters.time_constant_1_s)},
                                 {"time_constant_2_s", fmt::format("{:.6g}", parameters.time_constant_2_s)},
                                 {"shape", fmt::format("{:.6g}", parameters.shape)}};
-      const auto outside = static_cast<std::size_t>(std::count_if(activation.begin(), activation.end(), [](double a) { return a > 1.0; }));
-      if (outside > 0) above[i].push_back({trial.name, muscle.name, outside, *std::max_element(activation.begin(), activation.end())});
+      const auto outside = static_cast<std::size_t>(
+          std::count_if(activation.begin(), activation.end(), [](double a) { return a > 1.0; }));
+      if (outside > 0)
+        above[i].push_back(
+            {trial.name, muscle.name, outside, *std::max_element(activation.begin(), activation.end())});
       signal.samples = activation;
       out.signals->write(trial.name, signal);
     }
-    if (context.progress) context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()), trial.name);
+    if (context.progress)
+      context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()), trial.name);
   });
 
   TableBuilder table("activation above 1");
@@ -86,11 +94,13 @@ void run(const StageContext& context, StageOutput& out) {
   data::Table counted = table.take();
   if (counted.rows() > 0) {
     out.warn("activation-above-one", fmt::format("{} muscle trials have activations above 1", counted.rows()),
-             "the recorded effort exceeds what an activation of 1 stands for; see the table `above_one` of this stage");
+             "the recorded effort exceeds what an activation of 1 stands for; see the table `above_one` of "
+             "this stage");
     out.tables["above_one"] = std::move(counted);
   }
   if (!undriven.empty()) {
-    for (const std::string& muscle : undriven.front()) out.note("undriven-muscle", fmt::format("muscle `{}` has no excitation: it is passive", muscle));
+    for (const std::string& muscle : undriven.front())
+      out.note("undriven-muscle", fmt::format("muscle `{}` has no excitation: it is passive", muscle));
   }
 }
 
@@ -98,16 +108,21 @@ void fill(const ReportContext& context, report::Section& section) {
   std::vector<std::string> trials;
   for (const data::TrialInfo& trial : context.output->signals->info().trials) trials.push_back(trial.name);
   section.title += ": muscle activations";
-  section.blocks.push_back(trial_plots(*context.output->signals, trials, data::Quantity::activation, "activation"));
-  if (context.output->tables.contains("above_one")) section.blocks.push_back(report::make_grid(context.output->tables.at("above_one")));
+  section.blocks.push_back(
+      trial_plots(*context.output->signals, trials, data::Quantity::activation, "activation"));
+  if (context.output->tables.contains("above_one"))
+    section.blocks.push_back(report::make_grid(context.output->tables.at("above_one")));
 }
 
 std::string methods(const ReportContext& context) {
   const auto subject = context.inputs.find("subject");
   const bool calibrated = subject != context.inputs.end() && !subject->second.empty();
-  return std::string("Excitations became activations through second-order dynamics with an electromechanical delay (Lloyd & Besier 2003, "
-                     "doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004, doi:10.1123/jab.20.4.367), discretised exactly so that the result does not "
-                     "depend on the sampling rate, and a static nonlinearity") +
+  return std::string(
+             "Excitations became activations through second-order dynamics with an electromechanical delay "
+             "(Lloyd & Besier 2003, "
+             "doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004, doi:10.1123/jab.20.4.367), "
+             "discretised exactly so that the result does not "
+             "depend on the sampling rate, and a static nonlinearity") +
          (calibrated ? ", with the calibrated subject's parameters." : ", with the scene's parameters.");
 }
 
@@ -118,9 +133,12 @@ void add_emg_activation(Catalogue& catalogue) {
   spec.name = "emg.activation";
   spec.summary = "excitations to muscle activations: delay, second-order dynamics, nonlinearity";
   spec.doc =
-      "Mixes channels into muscles' excitations as the scene says, and runs each through a delay, second-order dynamics and a nonlinearity. With a "
-      "`subject` its parameters, gains and model choices are used (the options below are then not), otherwise the scene's parameters.\n"
-      "Sources: Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1; Manal & Buchanan 2003, doi:10.1016/S0021-9290(03)00152-0; Thelen 2003, "
+      "Mixes channels into muscles' excitations as the scene says, and runs each through a delay, "
+      "second-order dynamics and a nonlinearity. With a "
+      "`subject` its parameters, gains and model choices are used (the options below are then not), "
+      "otherwise the scene's parameters.\n"
+      "Sources: Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1; Manal & Buchanan 2003, "
+      "doi:10.1016/S0021-9290(03)00152-0; Thelen 2003, "
       "doi:10.1115/1.1531112 (first_order).";
   spec.needs_scene = true;
   spec.inputs = {{"excitation", PortType::signals, "normalised envelopes (emg.envelope)"},

@@ -13,7 +13,8 @@ namespace brachium::pipelines {
 std::vector<std::size_t> emg_channels(const data::TrialInfo& trial, const std::vector<std::string>& patterns,
                                       const std::vector<std::string>& excluded) {
   const std::vector<std::size_t> all = signals_of(trial, data::Quantity::emg);
-  const std::vector<std::string> chosen = select(patterns, names_of(trial, all), fmt::format("EMG signal of trial `{}`", trial.name));
+  const std::vector<std::string> chosen =
+      select(patterns, names_of(trial, all), fmt::format("EMG signal of trial `{}`", trial.name));
   std::vector<std::size_t> wanted;
   for (const std::size_t s : all) {
     const std::string& name = trial.signals[s].name;
@@ -22,7 +23,8 @@ std::vector<std::size_t> emg_channels(const data::TrialInfo& trial, const std::v
     if (in && !out) wanted.push_back(s);
   }
   if (wanted.empty()) {
-    throw data::InputError("missing-signal", fmt::format("trial `{}` has no EMG channel to work on", trial.name),
+    throw data::InputError("missing-signal",
+                           fmt::format("trial `{}` has no EMG channel to work on", trial.name),
                            all.empty() ? "no signal has the quantity `emg`: set it in the session description"
                                        : "all channels are excluded or left out by `channels`");
   }
@@ -39,11 +41,13 @@ std::vector<std::string> excluded_channels(const StageData* quality) {
   return names;
 }
 
-std::size_t threads_within_budget(std::size_t threads, const data::SessionInfo& session, const std::vector<std::string>& trials) {
+std::size_t threads_within_budget(std::size_t threads, const data::SessionInfo& session,
+                                  const std::vector<std::string>& trials) {
   std::size_t longest = 1;
   for (const data::TrialInfo& trial : session.trials) {
     if (std::find(trials.begin(), trials.end(), trial.name) == trials.end()) continue;
-    for (const std::size_t s : signals_of(trial, data::Quantity::emg)) longest = std::max(longest, trial.signals[s].count * sizeof(double));
+    for (const std::size_t s : signals_of(trial, data::Quantity::emg))
+      longest = std::max(longest, trial.signals[s].count * sizeof(double));
   }
   return std::clamp<std::size_t>(sample_budget_bytes / longest, 1, data::thread_count(threads));
 }
@@ -51,16 +55,23 @@ std::size_t threads_within_budget(std::size_t threads, const data::SessionInfo& 
 std::vector<OptionSpec> conditioning_option_specs() {
   const emg::ConditioningOptions d;
   return {
-      flag_option("remove_offset", d.remove_offset, "take off the trial's mean first: an offset left in shifts the envelope"),
-      number_option("highpass_hz", "Hz", d.highpass_hz, at_least(0), "lower edge of the band; 0: none (CEINMS manual 30; SENIAM 10-20; ISEK 5)"),
-      number_option("band_high_hz", "Hz", d.band_high_hz, at_least(0), "upper edge of the band; 0: high-pass only (SENIAM, ISEK 500)"),
-      integer_option("band_order", d.band_order, between(1, 10), "order of one pass of the band or high-pass filter"),
-      number_option("notch_hz", "Hz", d.notch_hz, at_least(0), "line frequency to notch out with its harmonics; 0: off"),
+      flag_option("remove_offset", d.remove_offset,
+                  "take off the trial's mean first: an offset left in shifts the envelope"),
+      number_option("highpass_hz", "Hz", d.highpass_hz, at_least(0),
+                    "lower edge of the band; 0: none (CEINMS manual 30; SENIAM 10-20; ISEK 5)"),
+      number_option("band_high_hz", "Hz", d.band_high_hz, at_least(0),
+                    "upper edge of the band; 0: high-pass only (SENIAM, ISEK 500)"),
+      integer_option("band_order", d.band_order, between(1, 10),
+                     "order of one pass of the band or high-pass filter"),
+      number_option("notch_hz", "Hz", d.notch_hz, at_least(0),
+                    "line frequency to notch out with its harmonics; 0: off"),
       integer_option("notch_harmonics", d.notch_harmonics, between(1, 20), "number of notches"),
       number_option("notch_width_hz", "Hz", d.notch_width_hz, above(0), "distance of a notch's -3 dB edges"),
-      choice_option("phase", "zero_lag", {"zero_lag", "causal"}, "zero_lag: forward and backward; causal: one pass, its delay reported"),
+      choice_option("phase", "zero_lag", {"zero_lag", "causal"},
+                    "zero_lag: forward and backward; causal: one pass, its delay reported"),
       choice_option("cutoff", "after_all_passes", {"after_all_passes", "per_pass"},
-                    "whether stated edges are the true -3 dB edges, or those of one pass as scipy's and MATLAB's filtfilt take them"),
+                    "whether stated edges are the true -3 dB edges, or those of one pass as scipy's and "
+                    "MATLAB's filtfilt take them"),
   };
 }
 

@@ -21,7 +21,8 @@ std::vector<std::string> excluded_channels(const StageData* quality);
 inline constexpr std::size_t sample_budget_bytes = std::size_t{128} << 20;
 
 /// As many of the threads as may each hold a channel of the named trials whole within that budget; at least one.
-std::size_t threads_within_budget(std::size_t threads, const data::SessionInfo& session, const std::vector<std::string>& trials);
+std::size_t threads_within_budget(std::size_t threads, const data::SessionInfo& session,
+                                  const std::vector<std::string>& trials);
 
 std::vector<OptionSpec> conditioning_option_specs();
 emg::ConditioningOptions conditioning_options(const Options& options);

@@ -13,19 +13,24 @@ void fill_envelope_report(const ReportContext& context, report::Section& section
   const StageData& output = *context.output;
   section.title += ": linear envelopes";
   report::GridOptions filters;
-  filters.names = {{"effective_order", "order"}, {"edges_at_minus_3_dB_Hz", "−3 dB edges [Hz]"}, {"group_delay_s", "delay"}, {"transient_s", "transient"}};
+  filters.names = {{"effective_order", "order"},
+                   {"edges_at_minus_3_dB_Hz", "−3 dB edges [Hz]"},
+                   {"group_delay_s", "delay"},
+                   {"transient_s", "transient"}};
   filters.words = {"filter"};
   filters.decimals = {{"group_delay_s", 3}, {"transient_s", 3}};
   section.blocks.push_back(report::make_grid(output.tables.at("filters"), filters));
   if (const auto trimmed = output.attributes.find("trimmed"); trimmed != output.attributes.end()) {
-    section.blocks.push_back(report::Paragraph{"Left out because the filters' transients reach there: " + trimmed->second + "."});
+    section.blocks.push_back(
+        report::Paragraph{"Left out because the filters' transients reach there: " + trimmed->second + "."});
   }
   if (output.tables.contains("normalisation")) {
     report::GridOptions grid;
     grid.words = {"method"};
     grid.digits = 3;
     grid.decimals = {{"time_s", 2}, {"window_s", 2}};
-    grid.names = {{"time_s", "from"}, {"window_s", "window"}, {"reference_V", "reference"}, {"rest_V", "rest"}};
+    grid.names = {
+        {"time_s", "from"}, {"window_s", "window"}, {"reference_V", "reference"}, {"rest_V", "rest"}};
     for (const data::Column& column : output.tables.at("normalisation").columns) {
       if (column.name.ends_with("_V")) grid.units[column.name] = "µV";
     }
@@ -60,17 +65,20 @@ void fill_envelope_report(const ReportContext& context, report::Section& section
     shown = table.title;  // "conditioning of `channel` in trial `trial`"
     top.x_label = "time [s]";
     top.y_label = "EMG [µV]";
-    top.series = {{"raw", time, scaled("raw_V"), report::Style::line, 6}, {"filtered", time, scaled("filtered_V"), report::Style::line, 0}};
+    top.series = {{"raw", time, scaled("raw_V"), report::Style::line, 6},
+                  {"filtered", time, scaled("filtered_V"), report::Style::line, 0}};
     top.height_px = 130.0;
     report::Plot bottom;
     bottom.y_label = "EMG [µV]";
-    bottom.series = {{"rectified", time, scaled("rectified_V"), report::Style::line, 5}, {"envelope", time, scaled("envelope_V"), report::Style::line, 1}};
+    bottom.series = {{"rectified", time, scaled("rectified_V"), report::Style::line, 5},
+                     {"envelope", time, scaled("envelope_V"), report::Style::line, 1}};
     bottom.height_px = 130.0;
     top.below.push_back(bottom);
     steps.plots.push_back(std::move(top));
   }
   if (const std::size_t at = shown.find("in trial"); at != std::string::npos) {
-    section.blocks.push_back(report::Paragraph{"Conditioning step by step, each channel around its largest envelope " + shown.substr(at) + ":"});
+    section.blocks.push_back(report::Paragraph{
+        "Conditioning step by step, each channel around its largest envelope " + shown.substr(at) + ":"});
   }
   section.blocks.push_back(steps);
   std::vector<std::string> trials;
@@ -82,18 +90,33 @@ std::string envelope_methods(const ReportContext& context) {
   const Options& o = *context.options;
   const bool zero_lag = o.text("phase") == "zero_lag";
   const auto order = [&](const char* key) { return o.integer(key) * (zero_lag ? 2 : 1); };
-  const std::string band = o.number("band_high_hz") > 0
-                               ? fmt::format("band-pass filtered {:g} to {:g} Hz (Butterworth, effective order {})", o.number("highpass_hz"), o.number("band_high_hz"), order("band_order"))
-                               : fmt::format("high-pass filtered at {:g} Hz (Butterworth, effective order {})", o.number("highpass_hz"), order("band_order"));
-  const std::string notch = o.number("notch_hz") > 0 ? fmt::format(", notched at {:g} Hz and harmonics", o.number("notch_hz")) : "";
-  const std::string edges = o.text("cutoff") == "per_pass" ? "cut-offs are those of one pass" : "cut-offs are the −3 dB edges after all passes";
+  const std::string band =
+      o.number("band_high_hz") > 0
+          ? fmt::format("band-pass filtered {:g} to {:g} Hz (Butterworth, effective order {})",
+                        o.number("highpass_hz"), o.number("band_high_hz"), order("band_order"))
+          : fmt::format("high-pass filtered at {:g} Hz (Butterworth, effective order {})",
+                        o.number("highpass_hz"), order("band_order"));
+  const std::string notch =
+      o.number("notch_hz") > 0 ? fmt::format(", notched at {:g} Hz and harmonics", o.number("notch_hz")) : "";
+  const std::string edges = o.text("cutoff") == "per_pass" ? "cut-offs are those of one pass"
+                                                           : "cut-offs are the −3 dB edges after all passes";
   std::string norm = "not normalised (a gain per channel is part of the calibration)";
-  if (o.text("normalise") == "mvc") norm = fmt::format("normalised by the largest {:g} s mean of the maximum voluntary contractions", o.number("reference_window_s"));
-  if (o.text("normalise") == "trials_maximum") norm = fmt::format("normalised by the largest {:g} s mean of the trials themselves, for want of a maximum voluntary contraction", o.number("reference_window_s"));
+  if (o.text("normalise") == "mvc")
+    norm = fmt::format("normalised by the largest {:g} s mean of the maximum voluntary contractions",
+                       o.number("reference_window_s"));
+  if (o.text("normalise") == "trials_maximum")
+    norm = fmt::format(
+        "normalised by the largest {:g} s mean of the trials themselves, for want of a maximum voluntary "
+        "contraction",
+        o.number("reference_window_s"));
   if (o.boolean("correct_reference_bias")) norm += ", less the expected excess of a maximum over the mean";
-  if (o.boolean("subtract_rest")) norm += ", after the envelope at rest had been taken off in the mean square";
-  return fmt::format("EMG was {}{}, full-wave rectified, low-pass filtered at {:g} Hz (Butterworth, effective order {}), {}; {} The linear envelope was {}.", band, notch,
-                     o.number("lowpass_hz"), order("lowpass_order"), zero_lag ? "forward and backward without lag" : "causally", edges + ".", norm);
+  if (o.boolean("subtract_rest"))
+    norm += ", after the envelope at rest had been taken off in the mean square";
+  return fmt::format(
+      "EMG was {}{}, full-wave rectified, low-pass filtered at {:g} Hz (Butterworth, effective order {}), "
+      "{}; {} The linear envelope was {}.",
+      band, notch, o.number("lowpass_hz"), order("lowpass_order"),
+      zero_lag ? "forward and backward without lag" : "causally", edges + ".", norm);
 }
 
 }  // namespace brachium::pipelines

@@ -66,6 +66,7 @@ std::vector<fem::StatePoint> listed_states(const Options& options) {
 std::vector<OptionSpec> limb_option_specs() {
   OptionSpec limb = required_text("limb", "the limb: bones, hinge, muscles (pipelines/README.md, `A limb`)");
   limb.is_file = true;
+  limb.files_within = files_of_limb;
   const fem::LimbMesh d;
   const fem::SolvedMuscleOptions s;
   return {limb,
@@ -88,6 +89,8 @@ std::vector<OptionSpec> limb_option_specs() {
           map_option("pre_stretch", above(0), "by muscle, instead of the limb's"),
           map_option("max_stress_Pa", above(0), "by muscle, instead of the limb's or the scaled one"),
           group_option(),
+          number_option("contact_tolerance_m", "m", s.contact_tolerance_m, at_least(0),
+                        "greatest penetration of a bone, by multipliers; 0: what the penalty leaves"),
           number_option("step_deg", "deg", 11.5, above(0), "load steps to begin with, of the angle"),
           number_option("step_activation", "1", s.step_activation, above(0), "load steps to begin with"),
           solver_option()};
@@ -114,6 +117,10 @@ PreparedLimb prepare_limb(const StageContext& context) {
   out.solving.solve = solve_options(options, 1);
   out.solving.step_rad = options.number("step_deg") * degree;
   out.solving.step_activation = options.number("step_activation");
+  out.solving.contact_tolerance_m = options.number("contact_tolerance_m");
+  out.log = find_stress_free_shapes(out.scene, out.solving);
+  for (const std::string& line : out.log)
+    if (context.say) context.say(line);
   return out;
 }
 

@@ -241,6 +241,8 @@ class Study {
     out_.attributes["load_arm_m"] = fmt::format("{}", limb_.scene.load_arm_m);
     out_.attributes["variant"] = to_string(limb_.scene.variant);
     out_.attributes["limb"] = limb_.scene.title;
+    if (!limb_.log.empty())
+      out_.attributes["stress_free_shapes"] = fmt::format("{}", fmt::join(limb_.log, "\n"));
     out_.attributes["not_modelled"] =
         limb_.scene.forearm.empty()
             ? ""

@@ -12,16 +12,17 @@
 
 namespace brachium::pipelines {
 
-/// limb, variant, mesh, scale_to, strength, pre_stretch, max_stress_Pa, group, solver.
+/// limb, variant, mesh, scale_to, strength, pre_stretch, max_stress_Pa, contact_tolerance_m, group, solver.
 std::vector<OptionSpec> limb_option_specs();
 
-/// The limb as the options say: read, scaled, with changed parameters; how muscles are grouped where a scene
+/// The limb as the options say: read, scaled, with changed parameters, its muscles stress-free; how muscles are grouped where a scene
 /// is at hand.
 struct PreparedLimb {
   LimbScene scene;
   std::optional<Grouping> grouping;
   std::optional<LimbScaling> scaling;
   fem::SolvedMuscleOptions solving;
+  std::vector<std::string> log;  ///< how muscles in situ were made stress-free
 };
 PreparedLimb prepare_limb(const StageContext& context);
 

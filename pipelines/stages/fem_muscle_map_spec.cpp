@@ -53,7 +53,8 @@ void add_muscle_map_stage(Catalogue& catalogue) {
                    required_number("activation", "1", between(0, 1), "of the muscle")},
                   "states one by one"),
       choice_option(
-          "surrogate", "hermite", {"hermite", "cubic", "quintic", "sparse_included", "sparse_modified", "none"},
+          "surrogate", "hermite",
+          {"hermite", "cubic", "quintic", "sparse_included", "sparse_modified", "none"},
           "Hermite interpolation by the exact slopes of force and moment, splines through a grid, or "
           "sparse-grid splines with or without states on the boundary"),
       list_of_numbers("show_activation", "1", {0.0, 1.0}, between(0, 1),

@@ -17,12 +17,12 @@
 #include "pipelines/stages/fem_checkpoint.hpp"
 #include "pipelines/stages/fem_field_files.hpp"
 #include "pipelines/stages/fem_muscle_map.hpp"
-#include "pipelines/stages/fem_upper_limb.hpp"
 #include "pipelines/stages/fem_options.hpp"
 #include "pipelines/stages/fem_problem.hpp"
 #include "pipelines/stages/fem_quantities.hpp"
 #include "pipelines/stages/fem_report.hpp"
 #include "pipelines/stages/fem_surface.hpp"
+#include "pipelines/stages/fem_upper_limb.hpp"
 
 namespace brachium::pipelines {
 namespace {

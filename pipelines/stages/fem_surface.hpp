@@ -2,12 +2,12 @@
 /// The surface of a mesh as triangles, with the fields that the report's 3D view colours; as tables, so that
 /// a report can be drawn again and others can read them.
 ///
-/// | table             | rows                                | columns |
-/// |-------------------|-------------------------------------|----------------------------------------------------------|
-/// | surface_points    | points of the surface               | point (index into the mesh), x_m y_m z_m,
-/// undeformed      | | surface_triangles | triangles, region by region         | region (index), a b c (rows
-/// of surface_points)            | | surface_edges     | sides of cells                      | region, a b |
-/// | surface_states    | state by state, point by point      | state, x_m y_m z_m deformed, fields |
+/// | table             | rows                           | columns                                              |
+/// |-------------------|--------------------------------|------------------------------------------------------|
+/// | surface_points    | points of the surface          | point (index into the mesh), x_m y_m z_m, undeformed |
+/// | surface_triangles | triangles, region by region    | region (index), a b c (rows of surface_points)       |
+/// | surface_edges     | sides of cells                 | region, a b                                          |
+/// | surface_states    | state by state, point by point | state, x_m y_m z_m deformed, fields                  |
 
 #include <map>
 #include <string>

@@ -13,10 +13,12 @@ void add_limb_inverse_dynamics(Catalogue& catalogue);
 void add_limb_dynamometer(Catalogue& catalogue);
 
 /// The recorded angle of a coordinate: the signal that the scene names, else the trial's only joint angle of it.
-data::Signal recorded_angle(const StageData& input, const std::string& trial, const data::Coordinate& coordinate);
+data::Signal recorded_angle(const StageData& input, const std::string& trial,
+                            const data::Coordinate& coordinate);
 
 /// Values on an even grid as a signal of a coordinate.
-data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity, const std::string& unit,
-                         const std::string& coordinate, const Eigen::VectorXd& values);
+data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity,
+                         const std::string& unit, const std::string& coordinate,
+                         const Eigen::VectorXd& values);
 
 }  // namespace brachium::pipelines

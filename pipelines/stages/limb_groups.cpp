@@ -53,6 +53,11 @@ void scale_lengths(fem::MuscleBody& b, double s) {
   b.tendon_insertion_m *= s;
   b.transition_m *= s;
   b.standoff_m *= s;
+  if (!b.shape) return;
+  fem::BodyShape shape = *b.shape;  // its mesh goes with belly_length_m and profile_m
+  shape.origin_across_m *= s;
+  shape.beside_path_m *= s;
+  b.shape = std::make_shared<const fem::BodyShape>(std::move(shape));
 }
 
 void scale(fem::RigidShape& shape, double s, const std::string& bone) {
@@ -177,6 +182,12 @@ LimbScaling scale_limb(LimbScene& limb, const Grouping& grouping, const data::Sc
                                  [&](const MuscleGroup& g) { return g.muscle == m.body.name; });
     if (at == grouping.groups.end()) continue;
     scale_lengths(m.body, s);
+    if (m.in_situ && strength == "cross_section")
+      throw data::InputError(
+          "contradiction",
+          fmt::format("muscle `{}` is imported in situ: its cross-section is the mesh's", m.body.name),
+          "take strength = \"max_stress\" or \"none\"");
+    if (m.in_situ) m.in_situ->points *= s;
     double radius_factor = 1.0;
     const double force = at->sum_n(), section = mean_section_m2(m.body);
     if (strength == "max_stress") m.body.material.max_stress_pa = force / section;

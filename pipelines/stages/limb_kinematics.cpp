@@ -14,23 +14,27 @@
 
 namespace brachium::pipelines {
 
-data::Signal recorded_angle(const StageData& input, const std::string& trial, const data::Coordinate& coordinate) {
+data::Signal recorded_angle(const StageData& input, const std::string& trial,
+                            const data::Coordinate& coordinate) {
   const std::size_t t = trial_index(input, trial);
   const data::TrialInfo& info = input.signals->info().trials[t];
   const std::string& name = coordinate.angle_signal.empty() ? coordinate.name : coordinate.angle_signal;
   if (info.has_signal(name)) {
     data::Signal signal = input.signals->signal(t, info.signal_index(name));
     if (signal.info.quantity != data::Quantity::joint_angle) {
-      throw data::InputError("wrong-quantity", fmt::format("signal `{}` of trial `{}` is meant as the angle of `{}`, but it is {} [{}]", name, trial, coordinate.name,
-                                                           data::to_string(signal.info.quantity), signal.info.unit),
-                             "set quantity = \"joint_angle\" in the session description, or `angle_signal` in the scene");
+      throw data::InputError(
+          "wrong-quantity",
+          fmt::format("signal `{}` of trial `{}` is meant as the angle of `{}`, but it is {} [{}]", name,
+                      trial, coordinate.name, data::to_string(signal.info.quantity), signal.info.unit),
+          "set quantity = \"joint_angle\" in the session description, or `angle_signal` in the scene");
     }
     return signal;
   }
   return signal_of(input, trial, data::Quantity::joint_angle, coordinate.name);
 }
 
-data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity, const std::string& unit, const std::string& coordinate,
+data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity,
+                         const std::string& unit, const std::string& coordinate,
                          const Eigen::VectorXd& values) {
   data::Signal signal;
   signal.info.name = name;
@@ -46,8 +50,8 @@ data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, da
 
 namespace {
 
-data::Signal like(const data::Signal& angle, const std::string& name, data::Quantity quantity, const std::string& unit, const data::Coordinate& coordinate,
-                  std::vector<double> samples) {
+data::Signal like(const data::Signal& angle, const std::string& name, data::Quantity quantity,
+                  const std::string& unit, const data::Coordinate& coordinate, std::vector<double> samples) {
   data::Signal signal{angle.info, std::move(samples)};
   signal.info.name = name;
   signal.info.quantity = quantity;
@@ -76,10 +80,14 @@ void run(const StageContext& context, StageOutput& out) {
       data::Signal angle = recorded_angle(input, trial, coordinate);
       for (double& q : angle.samples) q += offset;
       if (cutoff > 0.0) {
-        angle.samples = limb::smooth(angle.samples, {cutoff, angle.info.rate_hz}, fmt::format("joint angle `{}` of trial `{}`", angle.info.name, trial));
-        angle.info.attributes["smoothing"] = fmt::format("Butterworth low-pass, effective order 4, zero lag, -3 dB at {:g} Hz", cutoff);
+        angle.samples = limb::smooth(angle.samples, {cutoff, angle.info.rate_hz},
+                                     fmt::format("joint angle `{}` of trial `{}`", angle.info.name, trial));
+        angle.info.attributes["smoothing"] =
+            fmt::format("Butterworth low-pass, effective order 4, zero lag, -3 dB at {:g} Hz", cutoff);
       }
-      if (offset != 0.0) angle.info.attributes["angle_offset"] = fmt::format("{:g} deg added", context.options->number("angle_offset_deg"));
+      if (offset != 0.0)
+        angle.info.attributes["angle_offset"] =
+            fmt::format("{:g} deg added", context.options->number("angle_offset_deg"));
       if (rate > 0.0 && rate != angle.info.rate_hz) {
         const data::TimeGrid grid = data::common_grid(std::span(&angle.info, 1), rate);
         angle = data::resample(angle, grid);
@@ -91,19 +99,32 @@ void run(const StageContext& context, StageOutput& out) {
       for (const double v : velocity) fastest = std::max(fastest, std::abs(v));
       if (*low < coordinate.lower_rad || *high > coordinate.upper_rad) {
         const double deg = 180.0 / std::numbers::pi;
-        throw data::InputError("angle-out-of-range", fmt::format("`{}` of trial `{}` goes from {:.1f} to {:.1f} deg; the scene's geometry holds from {:.1f} to {:.1f} deg", coordinate.name, trial,
-                                                                 *low * deg, *high * deg, coordinate.lower_rad * deg, coordinate.upper_rad * deg),
-                               "widen `range_deg` with geometry that is valid there, check the angle's zero, or leave the trial out");
+        throw data::InputError("angle-out-of-range",
+                               fmt::format("`{}` of trial `{}` goes from {:.1f} to {:.1f} deg; the scene's "
+                                           "geometry holds from {:.1f} to {:.1f} deg",
+                                           coordinate.name, trial, *low * deg, *high * deg,
+                                           coordinate.lower_rad * deg, coordinate.upper_rad * deg),
+                               "widen `range_deg` with geometry that is valid there, check the angle's zero, "
+                               "or leave the trial out");
       }
       rows[i].push_back({coordinate.name, *low, *high, fastest});
-      out.signals->write(trial, like(angle, coordinate.name, data::Quantity::joint_angle, "rad", coordinate, angle.samples));
-      out.signals->write(trial, like(angle, coordinate.name + "_velocity", data::Quantity::joint_velocity, "rad/s", coordinate, velocity));
-      out.signals->write(trial, like(angle, coordinate.name + "_acceleration", data::Quantity::joint_acceleration, "rad/s^2", coordinate, acceleration));
+      out.signals->write(
+          trial, like(angle, coordinate.name, data::Quantity::joint_angle, "rad", coordinate, angle.samples));
+      out.signals->write(trial, like(angle, coordinate.name + "_velocity", data::Quantity::joint_velocity,
+                                     "rad/s", coordinate, velocity));
+      out.signals->write(
+          trial, like(angle, coordinate.name + "_acceleration", data::Quantity::joint_acceleration, "rad/s^2",
+                      coordinate, acceleration));
     }
-    if (context.progress) context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()), trial);
+    if (context.progress)
+      context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()), trial);
   });
   TableBuilder table("ranges of motion");
-  table.text("trial").text("coordinate").number("lowest_rad", "rad").number("highest_rad", "rad").number("fastest_rad_s", "rad/s");
+  table.text("trial")
+      .text("coordinate")
+      .number("lowest_rad", "rad")
+      .number("highest_rad", "rad")
+      .number("fastest_rad_s", "rad/s");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (const Row& r : rows[i]) table.row({context.trials[i], r.coordinate, r.lowest, r.highest, r.fastest});
   }
@@ -120,13 +141,20 @@ void fill(const ReportContext& context, report::Section& section) {
   section.blocks.emplace_back(report::make_grid(context.output->tables.at("ranges"), grid));
   std::vector<std::string> trials;
   for (const data::TrialInfo& trial : context.output->signals->info().trials) trials.push_back(trial.name);
-  section.blocks.push_back(trial_plots(*context.output->signals, trials, data::Quantity::joint_angle, "joint angle", "deg"));
+  section.blocks.push_back(
+      trial_plots(*context.output->signals, trials, data::Quantity::joint_angle, "joint angle", "deg"));
 }
 
 std::string methods(const ReportContext& context) {
   const double cutoff = context.options->number("lowpass_hz");
-  return cutoff > 0.0 ? fmt::format("Joint angles were low-pass filtered at {:g} Hz (Butterworth, effective order 4, no lag; Winter 2009, doi:10.1002/9780470549148) and differentiated by central differences of fourth order.", cutoff)
-                      : std::string("Joint angles were used as recorded and differentiated by central differences of fourth order.");
+  return cutoff > 0.0 ? fmt::format(
+                            "Joint angles were low-pass filtered at {:g} Hz (Butterworth, effective order 4, "
+                            "no lag; Winter 2009, doi:10.1002/9780470549148) and differentiated by central "
+                            "differences of fourth order.",
+                            cutoff)
+                      : std::string(
+                            "Joint angles were used as recorded and differentiated by central differences of "
+                            "fourth order.");
 }
 
 }  // namespace
@@ -136,13 +164,17 @@ void add_limb_kinematics(Catalogue& catalogue) {
   spec.name = "limb.kinematics";
   spec.summary = "joint angle, velocity and acceleration from the recorded angle";
   spec.doc =
-      "Smooths the recorded angle of every coordinate of the scene without lag (Winter 2009; Robertson & Dowling 2003, doi:10.1016/S1050-6411(03)00080-4), differentiates it, and checks it "
-      "against the range in which the scene's geometry holds. An angle outside that range is an error, not an extrapolation.";
+      "Smooths the recorded angle of every coordinate of the scene without lag (Winter 2009; Robertson & "
+      "Dowling 2003, doi:10.1016/S1050-6411(03)00080-4), differentiates it, and checks it "
+      "against the range in which the scene's geometry holds. An angle outside that range is an error, not "
+      "an extrapolation.";
   spec.needs_scene = true;
   spec.inputs = {{"signals", PortType::signals, "recordings with a joint angle", false, false, true}};
-  spec.options = {number_option("lowpass_hz", "Hz", 6.0, at_least(0), "low-pass of the angle; 0: none"),
-                  number_option("output_rate_hz", "Hz", 0.0, at_least(0), "rate of the result; 0: the recording's"),
-                  number_option("angle_offset_deg", "deg", 0.0, {}, "added to the recorded angle, where the recorder's zero is not the straight arm")};
+  spec.options = {
+      number_option("lowpass_hz", "Hz", 6.0, at_least(0), "low-pass of the angle; 0: none"),
+      number_option("output_rate_hz", "Hz", 0.0, at_least(0), "rate of the result; 0: the recording's"),
+      number_option("angle_offset_deg", "deg", 0.0, {},
+                    "added to the recorded angle, where the recorder's zero is not the straight arm")};
   spec.run = run;
   spec.report = fill;
   spec.methods = methods;

@@ -108,8 +108,8 @@ void read_header(TomlTable& root, Draft& draft) {
   }
 }
 
-void read_path(TomlTable& table, fem::CableGeometry& cable) {
-  if (const auto at = places(table, "origin_mm", 2)) cable.origin_m = *at;
+void read_path(TomlTable& table, fem::CableGeometry& cable, bool has_origin) {
+  if (const auto at = places(table, "origin_mm", 2, has_origin)) cable.origin_m = *at;
   if (auto insertion = table.table("insertion")) {
     cable.distance_m = millimetres(*insertion, "distance_mm", false);
     cable.offset_rad = insertion->require_number("ahead_deg") * degree;
@@ -148,6 +148,26 @@ void read_belly(TomlTable& table, fem::MuscleBody& body) {
     for (const double r : *radii) body.profile_m.push_back(1e-3 * r);
   }
   body.flatness = belly->positive("flatness", 1.0);
+  if (auto sheets = belly->table("aponeurosis")) {
+    fem::Aponeurosis& a = body.aponeurosis;
+    const auto share = [&](const char* key, double usual) {
+      const double value = sheets->number(key).value_or(usual);
+      if (value > 0.0 && value <= 0.9) return value;
+      sheets->error("out-of-range", fmt::format("`{}` must be above 0 and at most 0.9, not {}", key, value),
+                    key);
+      return usual;
+    };
+    if (!sheets->has("thickness_norm"))
+      sheets->error("missing-key", "`thickness_norm` is missing in `aponeurosis`");
+    a.thickness_norm = share("thickness_norm", 0.1);
+    a.origin_norm = share("origin_norm", a.origin_norm);
+    a.insertion_norm = share("insertion_norm", a.insertion_norm);
+    if (a.origin_norm + a.insertion_norm > 1.0)
+      sheets->error("out-of-range",
+                    "`origin_norm` and `insertion_norm` together must not exceed 1: the sheets overlap",
+                    "insertion_norm");
+    sheets->finish();
+  }
   belly->finish();
 }
 
@@ -208,9 +228,19 @@ void read_muscle(TomlTable& table, const fem::LimbMesh& mesh, std::vector<std::s
     table.error("unknown-value", fmt::format("muscle `{}` cannot be a `{}`", body.name, action), "action",
                 data::suggest(action, actions));
   muscle.flexor = action != "extensor";
-  read_path(table, body.cable);
-  read_belly(table, body);
-  read_tendons(table, draft.scene.variant, body);
+  read_path(table, body.cable, !table.has("mesh"));
+  if (table.has("mesh")) {
+    for (const char* key : {"belly", "tendons"}) {
+      if (table.has(key))
+        table.error("contradiction", fmt::format("muscle `{}` has a `mesh` and `{}`", body.name, key), key,
+                    "a mesh shows both; its tendons are regions named in `mesh.tendons`");
+      table.know(key);
+    }
+    body.pre_stretch = table.require_number("pre_stretch");
+  } else {
+    read_belly(table, body);
+    read_tendons(table, draft.scene.variant, body);
+  }
   read_material(table, body);
   body.standoff_m = millimetres(table, "standoff_mm", true, 0.0);
   body.fibres = table.text("fibres").value_or("harmonic");
@@ -219,6 +249,9 @@ void read_muscle(TomlTable& table, const fem::LimbMesh& mesh, std::vector<std::s
   body.belly_cells = mesh.belly_cells;
   body.section.core_cells = mesh.core_cells;
   body.section.ring_cells = mesh.ring_cells;
+  if (table.has("mesh") && draft.diagnostics.size() == before)
+    limb_parts::read_muscle_mesh(table, draft, muscle);
+  table.know("mesh");
   table.finish();
   if (draft.diagnostics.size() == before && draft.scene.range.lower_rad < draft.scene.range.upper_rad) {
     try {

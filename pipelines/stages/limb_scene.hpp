@@ -4,13 +4,15 @@
 ///   [limb]      title, range_deg, and where hinge and humerus lie in the bones' coordinates
 ///   [load]      arm_mm
 ///   [[bone]]    name, segment, and one of sphere, capsule, ellipsoid, triangles
-///   [[muscle]]  name, action, source, origin, insertion, obstacle, belly, tendons, material, pre-stretch
+///   [[muscle]]  name, action, source, origin, insertion, obstacle, belly with tendons or mesh, material,
+///               pre-stretch
 ///
 /// Muscles are given in the arm's frame of fem/limb/cable_path.hpp: the hinge is z through the origin, x
 /// anterior, y proximal. Bones may come in a frame of their own (an imaging device's), which [limb] then
 /// names.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,9 @@ struct LimbMuscle {
   fem::MuscleBody body;  ///< of the variant that was asked for
   bool flexor = true;
   std::string source;
+  /// Imported as it is in the arm at body.reference_rad: the body's shape is a first guess until
+  /// find_stress_free_shapes.
+  std::optional<data::Mesh> in_situ;
 };
 
 /// A bone's surface for pictures; in the arm's frame at 0 deg [m].
@@ -56,6 +61,12 @@ struct LimbScene {
 /// refused as fem::check does ("limb-geometry"), with the muscle's place. `mesh`: how finely the muscles are
 /// meshed.
 LimbScene read_limb(const std::filesystem::path& file, LimbVariant variant, const fem::LimbMesh& mesh = {});
+
+/// Meshes and triangle files that a limb file names, those that exist; none of a file that is no limb.
+std::vector<std::filesystem::path> files_of_limb(const std::filesystem::path& file);
+
+/// Stress-free shapes of the muscles that were imported in situ (fem/limb/in_situ.hpp); a line about each.
+std::vector<std::string> find_stress_free_shapes(LimbScene& limb, const fem::SolvedMuscleOptions& options);
 
 /// The same from a text; `folder` is what triangle files are relative to.
 LimbScene parse_limb(const std::string& text, const std::string& file_name,

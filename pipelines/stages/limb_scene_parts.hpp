@@ -29,6 +29,9 @@ std::optional<Eigen::VectorXd> places(io::TomlTable& table, const std::string& k
 void check_unique(const std::string& kind, const std::string& name, std::vector<std::string>& seen,
                   io::TomlTable& table);
 
+/// The table `mesh` of a muscle whose path, pre-stretch and material are read.
+void read_muscle_mesh(io::TomlTable& muscle, const Draft& draft, LimbMuscle& out);
+
 void read_bones(io::TomlTable& root, Draft& draft);
 
 }  // namespace brachium::pipelines::limb_parts

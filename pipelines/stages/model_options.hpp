@@ -12,7 +12,8 @@
 namespace brachium::pipelines {
 
 std::vector<OptionSpec> activation_option_specs();  ///< activation_form, nonlinearity, start_up
-std::vector<OptionSpec> muscle_option_specs();      ///< curves, tendon, fibre_velocity, compatibility, optimal_length_coupling
+std::vector<OptionSpec>
+muscle_option_specs();  ///< curves, tendon, fibre_velocity, compatibility, optimal_length_coupling
 optimise::ModelChoice activation_choice(const Options& options);
 optimise::ModelChoice model_choice(const Options& options);  ///< both groups
 
@@ -21,13 +22,15 @@ const data::Subject& subject_of(const StageData& data);
 
 /// A trial's excitations, multiplied by the subject's gains where it has some. Throws InputError: "missing-signal",
 /// "rate-mismatch" (channels on different grids), "not-normalised" (an envelope in V without a subject's gain).
-std::vector<data::Signal> excitation_channels(const StageData& excitation, const std::string& trial, const data::Subject* subject);
+std::vector<data::Signal> excitation_channels(const StageData& excitation, const std::string& trial,
+                                              const data::Subject* subject);
 
 /// Which samples of a reference moment are to be compared: its stage's signal `use`; empty where there is none.
 std::vector<bool> use_of(const StageData& moment, const std::string& trial);
 
 /// What a calibration is given of each trial: excitations, kinematics and reference moment of three inputs.
-std::vector<optimise::CalibrationTrial> calibration_trials(const StageContext& context, const data::Coordinate& coordinate,
+std::vector<optimise::CalibrationTrial> calibration_trials(const StageContext& context,
+                                                           const data::Coordinate& coordinate,
                                                            const std::vector<std::string>& trials);
 
 }  // namespace brachium::pipelines

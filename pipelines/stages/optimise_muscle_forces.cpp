@@ -30,18 +30,26 @@ bool concerns(const Options& o, const std::string& muscle) {
   return o.maybe_text("muscle").value_or(muscle) == muscle;
 }
 
+bool is_of_the_law(const std::string& parameter) {
+  for (const fem::BodyParameter& p : fem::body_parameters())
+    if (p.name == parameter) return p.material;
+  return false;
+}
+
 struct MuscleStudy {
-  fem::MuscleBody start;
+  fem::MuscleBody in_the_limb, start;
   std::vector<FreeBodyParameter> free;
   std::vector<ReferenceForce> references;
   std::optional<MuscleForceFit> strap, continuum;
+  std::optional<MuscleForceFit>
+      strap_geometry;  ///< with the limb's law; where a parameter of the law is free
 
   const fem::MuscleBody& fitted() const { return continuum->body; }
 };
 
 MuscleStudy study_of(const Options& options, const fem::MuscleBody& body) {
   MuscleStudy study;
-  study.start = body;
+  study.in_the_limb = study.start = body;
   study.references = reference_forces(options, body.name);
   for (const Options& o : options.tables("hold")) {
     if (concerns(o, body.name)) fem::set_body_value(study.start, o.text("parameter"), o.number("value"));
@@ -66,6 +74,12 @@ void fit(const Options& options, const PreparedLimb& limb,
     o.starts = static_cast<std::size_t>(options.integer("strap_starts"));
     study.strap =
         optimise::fit_muscle_forces(from, study.free, study.references, *optimise::strap_force_model(), o);
+    std::vector<FreeBodyParameter> geometry;
+    for (const FreeBodyParameter& f : study.free)
+      if (!is_of_the_law(f.name)) geometry.push_back(f);
+    if (!geometry.empty() && geometry.size() < study.free.size())
+      study.strap_geometry = optimise::fit_muscle_forces(study.in_the_limb, geometry, study.references,
+                                                         *optimise::strap_force_model(), o);
     if (options.text("begin_at") == "strap") from = study.strap->body;
   }
   optimise::ContinuumForceOptions c;
@@ -104,7 +118,8 @@ data::Table agreement_table(const std::vector<MuscleStudy>& studies) {
   table.number("rms_N", "N").number("worst_N", "N").number("worst_angle_deg", "deg");
   table.number("worst_activation", "1");
   for (const MuscleStudy& s : studies) {
-    for (const auto& [model, fit] : {std::pair{"continuum", &s.continuum}, std::pair{"strap", &s.strap}}) {
+    for (const auto& [model, fit] : {std::pair{"continuum", &s.continuum}, std::pair{"strap", &s.strap},
+                                     std::pair{"strap, the limb's law", &s.strap_geometry}}) {
       if (!fit->has_value()) continue;
       for (const optimise::ForceAgreement& a : optimise::agreement(s.references, (*fit)->force_n))
         table.row({s.start.name, std::string(model), a.set, static_cast<double>(a.states), a.relative_l2,

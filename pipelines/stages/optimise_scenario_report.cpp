@@ -212,10 +212,12 @@ report::Cell answer(const data::Table& table, const std::vector<std::size_t>& ro
     const std::string& outcome = table.texts("outcome")[i];
     if (!text.empty()) text += "; ";
     if (outcome == "none in range") {
-      text += angles ? "none" : fmt::format("none ({:+.2f} N m left)", table.numbers("remaining_moment_N_m")[i]);
+      text +=
+          angles ? "none" : fmt::format("none ({:+.2f} N m left)", table.numbers("remaining_moment_N_m")[i]);
       tone = report::Tone::warning;
     } else if (angles) {
-      text += fmt::format("{:.1f}{}", table.numbers("angle_deg")[i], outcome == "unstable" ? " unstable" : "");
+      text +=
+          fmt::format("{:.1f}{}", table.numbers("angle_deg")[i], outcome == "unstable" ? " unstable" : "");
     } else {
       text += fmt::format("{:.3f}", table.numbers("activation")[i]);
     }
@@ -302,13 +304,14 @@ report::PlotRow histories_together(const data::Table& table) {
 void fill_scenario_report(const ReportContext& context, report::Section& section) {
   const StageData& output = *context.output;
   section.title += ": static equilibrium";
-  section.blocks.push_back(
-      report::Paragraph{"Forces between the states that were given or solved by interpolation; moment arms are "
-                        "positive for flexors. A load above 0 extends."});
+  section.blocks.push_back(report::Paragraph{
+      "Forces between the states that were given or solved by interpolation; moment arms are "
+      "positive for flexors. A load above 0 extends."});
   const std::vector<std::string> systems = names_in(output.tables.at("forces"), "system");
   if (systems.size() > 1) {
     if (output.tables.at("equilibria").rows() > 0)
-      section.blocks.push_back(side_by_side(output.tables.at("equilibria"), "Equilibrium angles [deg], all roots"));
+      section.blocks.push_back(
+          side_by_side(output.tables.at("equilibria"), "Equilibrium angles [deg], all roots"));
     if (output.tables.at("positions").rows() > 0)
       section.blocks.push_back(side_by_side(output.tables.at("positions"), "Activations that hold an angle"));
     if (output.tables.at("histories").rows() > 0)

@@ -38,8 +38,10 @@ void add_optimise_scenario(Catalogue& catalogue) {
   spec.summary =
       "static equilibrium of a joint with given or mapped muscle forces: angles, activations, load histories";
   spec.doc =
-      "The equivalent static system of a joint: muscle forces over angle and activation and their lever arms are given "
-      "as tables and polynomials of the angle, or come from muscle maps, and a load acts on the forearm. With several "
+      "The equivalent static system of a joint: muscle forces over angle and activation and their lever arms "
+      "are given "
+      "as tables and polynomials of the angle, or come from muscle maps, and a load acts on the forearm. "
+      "With several "
       "maps or lever arms the same questions are asked of each system, and answers stand side by side. "
       "Three questions are asked of it. Activation-driven (`equilibrium`): all angles at which given "
       "activations hold a load, with their stability. Position-driven (`position`): the activation "
@@ -76,10 +78,10 @@ void add_optimise_scenario(Catalogue& catalogue) {
       arms,
       choice_option("force_curve", "monotone", {"monotone", "cubic", "linear"},
                     "interpolation over the angle; over the activation linear, cubic from 3 activations on"),
-      optional_number(
-          "load_arm_mm", "mm", above(0),
-          "distance of the load from the joint: its lever arm is this times the sine of the angle; absent: that of the "
-          "maps' limb"),
+      optional_number("load_arm_mm", "mm", above(0),
+                      "distance of the load from the joint: its lever arm is this times the sine of the "
+                      "angle; absent: that of the "
+                      "maps' limb"),
       optional_number("lower_deg", "deg", {}, "range of angles; absent: that of the tables"),
       optional_number("upper_deg", "deg", {}, "range of angles; absent: that of the tables"),
       tables_of("equilibrium", {name, activation, load}, "activation-driven cases"),

@@ -65,7 +65,8 @@ fem::SurrogateModel model_of(const Options& options) {
   return fem::SurrogateModel("angle", std::move(muscles));
 }
 
-optimise::StaticSystem system_of(const Options& options, const fem::SurrogateModel& model, double limb_arm_m) {
+optimise::StaticSystem system_of(const Options& options, const fem::SurrogateModel& model,
+                                 double limb_arm_m) {
   optimise::StaticSystem system;
   system.model = &model;
   const auto arm = options.maybe_number("load_arm_mm");
@@ -105,7 +106,8 @@ std::vector<ScenarioSystem> scenario_systems(const StageContext& context) {
   for (const StageData* input : wired->second) {
     const LimbMap map = limb_map_of(*input);
     for (const std::string& method : options.texts("lever_arm"))
-      add(fmt::format("{}: {}", map.stage, moment_method_words(method)), model_of(map, method, "angle"), map.load_arm_m);
+      add(fmt::format("{}: {}", map.stage, moment_method_words(method)), model_of(map, method, "angle"),
+          map.load_arm_m);
   }
   return systems;
 }

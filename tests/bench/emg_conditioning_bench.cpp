@@ -19,12 +19,15 @@
 namespace {
 
 // CPU time of the process: what other programs do on the machine does not count.
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 void save(const std::string& file, const std::vector<std::vector<double>>& channels) {
   std::ofstream out(file, std::ios::binary);
   for (const auto& x : channels) {
-    out.write(reinterpret_cast<const char*>(x.data()), static_cast<std::streamsize>(x.size() * sizeof(double)));
+    out.write(reinterpret_cast<const char*>(x.data()),
+              static_cast<std::streamsize>(x.size() * sizeof(double)));
   }
 }
 
@@ -47,7 +50,8 @@ double time_conditioning(std::vector<std::vector<double>>& channels) {
 }
 
 double time_activation(bool with_tangents) {
-  std::vector<double> e(2000), a(e.size()), u(e.size()), t1(e.size()), t2(e.size()), t3(e.size()), t4(e.size()), t5(e.size());
+  std::vector<double> e(2000), a(e.size()), u(e.size()), t1(e.size()), t2(e.size()), t3(e.size()),
+      t4(e.size()), t5(e.size());
   for (std::size_t k = 0; k < e.size(); ++k) e[k] = 0.5 + 0.4 * std::sin(0.03 * static_cast<double>(k));
   const brachium::data::ActivationParameters p{0.0371, 0.012, 0.041, -1.5};
   double best = 1e9;

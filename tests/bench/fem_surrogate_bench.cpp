@@ -38,8 +38,7 @@ Surrogate make(int kind, int outputs) {
   if (kind == sparse) {
     std::vector<StatePoint> points;
     const SparseGrid grid = SparseGrid::regular(SparseBoundary::included, 4);
-    for (const SparseIndex& p : grid.points())
-      points.push_back(state_of(p, elbow()));
+    for (const SparseIndex& p : grid.points()) points.push_back(state_of(p, elbow()));
     return sparse_surrogate(states(points, outputs), elbow(), SparseBoundary::included);
   }
   const SampleGrid grid =

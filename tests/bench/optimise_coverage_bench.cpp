@@ -74,8 +74,8 @@ int main(int argc, char** argv) {
   });
 
   if (argc > 4) write_rows(argv[4], outcomes);
-  fmt::print("{:<44} {:>8} {:>9} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "parameter", "truth", "covered", "error",
-             "uncorrected", "stated bias", "error sd", "stated se");
+  fmt::print("{:<44} {:>8} {:>9} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "parameter", "truth", "covered",
+             "error", "uncorrected", "stated bias", "error sd", "stated se");
   std::size_t covered_all = 0, total = 0, seeds_covered[2] = {0, 0};
   const auto& parameters = outcomes[0].result.parameters;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
@@ -91,9 +91,10 @@ int main(int argc, char** argv) {
       bias += v.bias / static_cast<double>(seeds);
       se += v.standard_error / static_cast<double>(seeds);
     }
-    fmt::print("{:<44} {:>8.4g} {:>8.1f}% {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e}\n", parameters[j].label(),
-               outcomes[0].truth[i], 100.0 * static_cast<double>(covered) / static_cast<double>(seeds), error,
-               raw, bias, std::sqrt(square - error * error), se);
+    fmt::print("{:<44} {:>8.4g} {:>8.1f}% {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e}\n",
+               parameters[j].label(), outcomes[0].truth[i],
+               100.0 * static_cast<double>(covered) / static_cast<double>(seeds), error, raw, bias,
+               std::sqrt(square - error * error), se);
     covered_all += covered;
     total += seeds;
     ++seeds_covered[10 * covered >= 9 * seeds ? 0 : 1];

@@ -27,8 +27,8 @@ ActivationModel model_of(ActivationForm form, Nonlinearity nonlinearity = Nonlin
   return {form, nonlinearity, start_up};
 }
 
-std::vector<double> run(const ActivationModel& model, const ActivationParameters& p, const std::vector<double>& e,
-                        double rate, double gain = 1.0) {
+std::vector<double> run(const ActivationModel& model, const ActivationParameters& p,
+                        const std::vector<double>& e, double rate, double gain = 1.0) {
   std::vector<double> a(e.size());
   activate(model, p, e, rate, a, gain);
   return a;
@@ -46,14 +46,17 @@ TEST(Continuous, EqualsTheClosedFormStepResponseAtEverySubSampleDelay) {
   const double rate = 200.0;
   const std::vector<double> e(200, 1.0);
   for (const double delay : {0.0, 0.0013, 0.005, 0.0399, 0.040, 0.0421}) {
-    for (const auto& [tau1, tau2] : {std::pair{0.010, 0.040}, std::pair{0.02, 0.02}, std::pair{0.02, 0.02 * (1 + 1e-9)},
-                                     std::pair{0.0005, 0.1}}) {
-      const std::vector<double> u = run(model_of(ActivationForm::continuous, Nonlinearity::none, StartUp::rest),
-                                        {delay, tau1, tau2, 0.0}, e, rate);
+    for (const auto& [tau1, tau2] : {std::pair{0.010, 0.040}, std::pair{0.02, 0.02},
+                                     std::pair{0.02, 0.02 * (1 + 1e-9)}, std::pair{0.0005, 0.1}}) {
+      const std::vector<double> u =
+          run(model_of(ActivationForm::continuous, Nonlinearity::none, StartUp::rest),
+              {delay, tau1, tau2, 0.0}, e, rate);
       for (std::size_t k = 0; k < u.size(); ++k) {
         const double t = static_cast<double>(k) / rate - delay;
-        const double tolerance = tau1 != tau2 && std::abs(tau1 - tau2) < 1e-6 ? 1e-6 : 1e-13;  // of the closed form
-        ASSERT_NEAR(u[k], t <= 0.0 ? 0.0 : step_response(t, tau1, tau2), tolerance) << delay << " " << tau1 << " " << k;
+        const double tolerance =
+            tau1 != tau2 && std::abs(tau1 - tau2) < 1e-6 ? 1e-6 : 1e-13;  // of the closed form
+        ASSERT_NEAR(u[k], t <= 0.0 ? 0.0 : step_response(t, tau1, tau2), tolerance)
+            << delay << " " << tau1 << " " << k;
       }
     }
   }
@@ -62,12 +65,16 @@ TEST(Continuous, EqualsTheClosedFormStepResponseAtEverySubSampleDelay) {
 TEST(Continuous, StepSettlesAtTheExcitation) {
   const std::vector<double> e(2000, 0.7);
   for (const auto form : {ActivationForm::continuous, ActivationForm::recursive}) {
-    const std::vector<double> u = run(model_of(form, Nonlinearity::none, StartUp::rest), {0.01, 0.01, 0.04, 0.0}, e, 500.0);
+    const std::vector<double> u =
+        run(model_of(form, Nonlinearity::none, StartUp::rest), {0.01, 0.01, 0.04, 0.0}, e, 500.0);
     EXPECT_NEAR(u.back(), 0.7, 1e-12);
     const std::vector<double> settled = run(model_of(form), {0.01, 0.01, 0.04, 0.0}, e, 500.0);
     for (const double x : settled) ASSERT_NEAR(x, 0.7, 1e-12);
   }
-  EXPECT_NEAR(run(model_of(ActivationForm::first_order, Nonlinearity::none, StartUp::rest), {0.01, 0.01, 0.04, 0.0}, e, 500.0).back(), 0.7, 1e-12);
+  EXPECT_NEAR(run(model_of(ActivationForm::first_order, Nonlinearity::none, StartUp::rest),
+                  {0.01, 0.01, 0.04, 0.0}, e, 500.0)
+                  .back(),
+              0.7, 1e-12);
 }
 
 TEST(Continuous, ResultsAt500And1000And2000HertzAgreeWithin1eMinus3ForA3HertzExcitation) {
@@ -88,7 +95,8 @@ TEST(Recursive, LeadsTheContinuousModelByOneSampleSoThatItsRateMattersUnlessItsD
     std::vector<std::vector<double>> u;
     for (const double rate : {500.0, 2000.0}) {
       const ActivationParameters p{0.02 + extra_samples / rate, 0.010, 0.040, 0.0};
-      u.push_back(run(model_of(ActivationForm::recursive), p, excitation(static_cast<std::size_t>(2 * rate), rate), rate));
+      u.push_back(run(model_of(ActivationForm::recursive), p,
+                      excitation(static_cast<std::size_t>(2 * rate), rate), rate));
     }
     for (std::size_t k = 100; k < u[0].size(); ++k) worst = std::max(worst, std::abs(u[0][k] - u[1][4 * k]));
     return worst;
@@ -98,7 +106,8 @@ TEST(Recursive, LeadsTheContinuousModelByOneSampleSoThatItsRateMattersUnlessItsD
 
   const double rate = 1000.0;
   const std::vector<double> e = excitation(2000, rate);
-  const std::vector<double> reference = run(continuous, {equivalent_continuous_delay(0.03, rate), 0.010, 0.040, 0.0}, e, rate);
+  const std::vector<double> reference =
+      run(continuous, {equivalent_continuous_delay(0.03, rate), 0.010, 0.040, 0.0}, e, rate);
   const std::vector<double> u = run(model_of(ActivationForm::recursive), {0.03, 0.010, 0.040, 0.0}, e, rate);
   for (std::size_t k = 100; k < u.size(); ++k) ASSERT_NEAR(u[k], reference[k], 3e-4);
 }
@@ -135,9 +144,10 @@ TEST(Continuous, EqualsTheSameEquationInsideASolver) {
 
 TEST(SecondOrderStep, IsExactForFarApartCloseAndEqualTimeConstants) {
   // Two half steps equal one whole step; unit gain; e linear.
-  for (const auto& [tau1, tau2] : {std::pair{0.02, 0.02}, std::pair{0.02, 0.02 + 1e-12}, std::pair{1e-5, 0.1}, std::pair{0.1, 1e-5},
-                                   std::pair{10.0, 1e-4}}) {
-    const SecondOrderStep whole = second_order_step(tau1, tau2, 0.005), half = second_order_step(tau1, tau2, 0.0025);
+  for (const auto& [tau1, tau2] : {std::pair{0.02, 0.02}, std::pair{0.02, 0.02 + 1e-12}, std::pair{1e-5, 0.1},
+                                   std::pair{0.1, 1e-5}, std::pair{10.0, 1e-4}}) {
+    const SecondOrderStep whole = second_order_step(tau1, tau2, 0.005),
+                          half = second_order_step(tau1, tau2, 0.0025);
     const std::array<double, 4> x{0.3, 0.1, 0.2, 0.25};
     const auto once = whole(x, 0.4, 0.2);
     const auto twice = half(half(x, 0.4, 0.1), 0.5, 0.1);
@@ -148,7 +158,8 @@ TEST(SecondOrderStep, IsExactForFarApartCloseAndEqualTimeConstants) {
 
 // ------------------------------------------------------------------ CEINMS
 
-std::vector<std::vector<double>> sto_columns(const std::filesystem::path& file, std::vector<std::string>& names) {
+std::vector<std::vector<double>> sto_columns(const std::filesystem::path& file,
+                                             std::vector<std::string>& names) {
   std::ifstream in(file);
   std::string line;
   while (std::getline(in, line) && line.rfind("endheader", 0) != 0) {
@@ -171,7 +182,8 @@ TEST(Recursive, WithCeinmsStartUpEqualsCeinmsActivationsToRounding) {
   const auto dir = tests::reference_dir() / "ceinms_elbow";
   const auto activations = sto_columns(dir / "outputs/stiff_offline/Activations.sto", muscles);
   const auto emg = sto_columns(dir / "trial/emg.sto", channels);
-  const ActivationModel model = model_of(ActivationForm::recursive, Nonlinearity::exponential, StartUp::ceinms);
+  const ActivationModel model =
+      model_of(ActivationForm::recursive, Nonlinearity::exponential, StartUp::ceinms);
   std::size_t compared = 0;
   for (std::size_t m = 1; m < muscles.size(); ++m) {
     // The excitation generator's map is one channel per muscle: find the channel that fits at the first sample.
@@ -180,7 +192,8 @@ TEST(Recursive, WithCeinmsStartUpEqualsCeinmsActivationsToRounding) {
       std::vector<double> a(emg[c].size());
       activate(model, RecursionParameters{-0.5, -0.5, 0.0, -1.5, 200.0}, emg[c], 200.0, a);
       double worst = 0.0;
-      for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, std::abs(a[k] - activations[m].at(k)));
+      for (std::size_t k = 0; k < a.size(); ++k)
+        worst = std::max(worst, std::abs(a[k] - activations[m].at(k)));
       best = std::min(best, worst);
     }
     EXPECT_LT(best, 1e-14) << muscles[m];
@@ -193,12 +206,17 @@ TEST(Recursive, AcceptsNegativePolesAndRefusesUnstableOnes) {
   const ActivationModel model = model_of(ActivationForm::recursive);
   const std::vector<double> e(400, 0.7);
   std::vector<double> u(e.size());
-  activate(model_of(ActivationForm::recursive, Nonlinearity::none, StartUp::rest), RecursionParameters{0.5, -0.9, 0.0, 0.0, 200.0}, e, 200.0, u);
+  activate(model_of(ActivationForm::recursive, Nonlinearity::none, StartUp::rest),
+           RecursionParameters{0.5, -0.9, 0.0, 0.0, 200.0}, e, 200.0, u);
   EXPECT_NEAR(u.back(), 0.7, 1e-12);
-  EXPECT_EQ(input_error([&] { activate(model, RecursionParameters{1.0, -1.2, 0.0, 0.0, 200.0}, e, 200.0, u); }),
+  EXPECT_EQ(input_error([&] {
+              activate(model, RecursionParameters{1.0, -1.2, 0.0, 0.0, 200.0}, e, 200.0, u);
+            }),
             "out-of-range: `g1` = 1 must lie in (-1, 1): the recursion would not be stable\n"
             "out-of-range: `g2` = -1.2 must lie in (-1, 1): the recursion would not be stable");
-  EXPECT_EQ(input_error([&] { activate(model, RecursionParameters{-0.5, -0.5, 0.0, 0.0, 1000.0}, e, 200.0, u); }),
+  EXPECT_EQ(input_error([&] {
+              activate(model, RecursionParameters{-0.5, -0.5, 0.0, 0.0, 1000.0}, e, 200.0, u);
+            }),
             "rate-mismatch: `g1`, `g2` were given for 1000 Hz, the excitation has 200 Hz");
   EXPECT_EQ(input_error([] { (void)time_constant(0.3, 200.0); }),
             "no-time-constant: g = `0.3` has no time constant: it must lie in (-1, 0)");
@@ -221,8 +239,8 @@ struct Tangents {
 };
 
 // Largest difference between the tangents and central finite differences, each relative to the tangent's largest value.
-double worst_tangent(const ActivationModel& model, ActivationParameters p, const std::vector<double>& e, double rate,
-                     double wrong = 1.0, double step = 1.0) {
+double worst_tangent(const ActivationModel& model, ActivationParameters p, const std::vector<double>& e,
+                     double rate, double wrong = 1.0, double step = 1.0) {
   Tangents t(e.size());
   std::vector<double> a(e.size());
   const double gain = 0.9;
@@ -232,7 +250,8 @@ double worst_tangent(const ActivationModel& model, ActivationParameters p, const
   EXPECT_LT(tests::relative_difference(a, plain), 1e-14);
 
   double worst = 0.0;
-  const auto compare = [&](const std::vector<double>& tangent, double h, const std::function<std::vector<double>(double)>& at) {
+  const auto compare = [&](const std::vector<double>& tangent, double h,
+                           const std::function<std::vector<double>(double)>& at) {
     const auto p1 = at(h), m1 = at(-h), p2 = at(2 * h), m2 = at(-2 * h);
     const double size = tests::largest(tangent);
     for (std::size_t k = 0; k < e.size(); ++k) {
@@ -241,11 +260,27 @@ double worst_tangent(const ActivationModel& model, ActivationParameters p, const
     }
   };
   compare(t.gain, 1e-4 * step, [&](double h) { return run(model, p, e, rate, gain + h); });
-  compare(t.delay, 2e-5 * step, [&](double h) { auto q = p; q.delay_s += h; return run(model, q, e, rate, gain); });
-  compare(t.one, 2e-5 * step, [&](double h) { auto q = p; q.time_constant_1_s += h; return run(model, q, e, rate, gain); });
-  compare(t.two, 2e-5 * step, [&](double h) { auto q = p; q.time_constant_2_s += h; return run(model, q, e, rate, gain); });
+  compare(t.delay, 2e-5 * step, [&](double h) {
+    auto q = p;
+    q.delay_s += h;
+    return run(model, q, e, rate, gain);
+  });
+  compare(t.one, 2e-5 * step, [&](double h) {
+    auto q = p;
+    q.time_constant_1_s += h;
+    return run(model, q, e, rate, gain);
+  });
+  compare(t.two, 2e-5 * step, [&](double h) {
+    auto q = p;
+    q.time_constant_2_s += h;
+    return run(model, q, e, rate, gain);
+  });
   if (model.nonlinearity != Nonlinearity::none) {
-    compare(t.shape, 1e-5 * step, [&](double h) { auto q = p; q.shape += h; return run(model, q, e, rate, gain); });
+    compare(t.shape, 1e-5 * step, [&](double h) {
+      auto q = p;
+      q.shape += h;
+      return run(model, q, e, rate, gain);
+    });
   }
   return worst;
 }
@@ -254,16 +289,26 @@ TEST(Activation, TangentsEqualFiniteDifferencesForEveryFormAndAWrongTwinIsCaught
   const double rate = 200.0;
   const std::vector<double> e = excitation(300, rate);
   for (const StartUp start : {StartUp::steady_state, StartUp::rest}) {
-    const ActivationModel exponential = model_of(ActivationForm::continuous, Nonlinearity::exponential, start);
+    const ActivationModel exponential =
+        model_of(ActivationForm::continuous, Nonlinearity::exponential, start);
     EXPECT_LT(worst_tangent(exponential, {0.0371, 0.012, 0.041, -1.5}, e, rate), 1e-8);
     EXPECT_LT(worst_tangent(exponential, {0.0371, 0.025, 0.025, -1.5}, e, rate), 1e-8) << "confluent";
     // Short steps where a second derivative jumps: at the start from rest, at the node, at the turn from rise to fall.
-    EXPECT_LT(worst_tangent(exponential, {0.0350, 0.012, 0.041, -1.5}, e, rate, 1.0, 0.01), 1e-5) << "whole samples";
-    EXPECT_LT(worst_tangent(model_of(ActivationForm::continuous, Nonlinearity::piecewise, start), {0.0371, 0.012, 0.041, 0.07}, e, rate, 1.0, 0.01), 1e-6);
-    EXPECT_LT(worst_tangent(model_of(ActivationForm::recursive, Nonlinearity::exponential, start), {0.0371, 0.012, 0.041, -1.5}, e, rate), 1e-8);
-    EXPECT_LT(worst_tangent(model_of(ActivationForm::first_order, Nonlinearity::none, start), {0.0371, 0.0124, 0.0413, -1.5}, e, rate, 1.0, 0.01), 1e-3);
+    EXPECT_LT(worst_tangent(exponential, {0.0350, 0.012, 0.041, -1.5}, e, rate, 1.0, 0.01), 1e-5)
+        << "whole samples";
+    EXPECT_LT(worst_tangent(model_of(ActivationForm::continuous, Nonlinearity::piecewise, start),
+                            {0.0371, 0.012, 0.041, 0.07}, e, rate, 1.0, 0.01),
+              1e-6);
+    EXPECT_LT(worst_tangent(model_of(ActivationForm::recursive, Nonlinearity::exponential, start),
+                            {0.0371, 0.012, 0.041, -1.5}, e, rate),
+              1e-8);
+    EXPECT_LT(worst_tangent(model_of(ActivationForm::first_order, Nonlinearity::none, start),
+                            {0.0371, 0.0124, 0.0413, -1.5}, e, rate, 1.0, 0.01),
+              1e-3);
   }
-  EXPECT_GT(worst_tangent(model_of(ActivationForm::continuous, Nonlinearity::exponential), {0.0371, 0.012, 0.041, -1.5}, e, rate, 1.001), 1e-4);
+  EXPECT_GT(worst_tangent(model_of(ActivationForm::continuous, Nonlinearity::exponential),
+                          {0.0371, 0.012, 0.041, -1.5}, e, rate, 1.001),
+            1e-4);
 }
 
 TEST(Recursive, TangentsInItsOwnCoefficientsEqualFiniteDifferences) {
@@ -286,7 +331,8 @@ TEST(Recursive, TangentsInItsOwnCoefficientsEqualFiniteDifferences) {
       const double h = 1e-5;
       const auto plus = at(change, h), minus = at(change, -h);
       for (std::size_t k = 0; k < e.size(); ++k) {
-        ASSERT_NEAR(tangent[k], (plus[k] - minus[k]) / (2 * h), 1e-7 * std::max(1.0, tests::largest(tangent)));
+        ASSERT_NEAR(tangent[k], (plus[k] - minus[k]) / (2 * h),
+                    1e-7 * std::max(1.0, tests::largest(tangent)));
       }
     };
     compare(t.one, [](RecursionParameters& q, double h) { q.g1 += h; });
@@ -339,26 +385,36 @@ TEST(Activation, ExcitationAboveOneIsNotClamped) {
 
 TEST(Activation, DelayLongerThanTheTrialGivesTheStartingValue) {
   const std::vector<double> e = excitation(50, 200.0);
-  for (const auto form : {ActivationForm::continuous, ActivationForm::recursive, ActivationForm::first_order}) {
-    for (const double a : run(model_of(form), {10.0, 0.012, 0.041, 0.0}, e, 200.0)) ASSERT_NEAR(a, e[0], 1e-12);
+  for (const auto form :
+       {ActivationForm::continuous, ActivationForm::recursive, ActivationForm::first_order}) {
+    for (const double a : run(model_of(form), {10.0, 0.012, 0.041, 0.0}, e, 200.0))
+      ASSERT_NEAR(a, e[0], 1e-12);
   }
   EXPECT_TRUE(run(continuous, {}, {}, 200.0).empty());
 }
 
 TEST(Activation, MistakesAreReportedAtOnceAndByName) {
   const std::vector<double> e(10, 0.5);
-  EXPECT_EQ(input_error([&] { (void)run(model_of(ActivationForm::continuous, Nonlinearity::exponential), {-1.0, 0.0, std::nan(""), 2.0}, e, 200.0); }),
+  EXPECT_EQ(input_error([&] {
+              (void)run(model_of(ActivationForm::continuous, Nonlinearity::exponential),
+                        {-1.0, 0.0, std::nan(""), 2.0}, e, 200.0);
+            }),
             "out-of-range: `delay_s` = -1 s must be >= 0\n"
             "out-of-range: `shape` = 2 is outside [-3, 0], the range of the exponential nonlinearity\n"
             "out-of-range: `time_constant_1_s` = 0 s must be > 0\n"
             "out-of-range: `time_constant_2_s` = nan s must be > 0");
-  EXPECT_EQ(input_error([] { check_parameters({}, data::ActivationParameters{0.04, -0.01, 0.035, -1.5}, "BIClong"); }),
+  EXPECT_EQ(input_error([] {
+              check_parameters({}, data::ActivationParameters{0.04, -0.01, 0.035, -1.5}, "BIClong");
+            }),
             "out-of-range: `time_constant_1_s` of muscle `BIClong` = -0.01 s must be > 0");
   std::vector<double> bad = e;
   bad[3] = std::nan("");
   EXPECT_EQ(input_error([&] { (void)run(continuous, {}, bad, 200.0); }),
             "not-finite: the excitation is `nan` at sample 3 (0.015 s)");
-  EXPECT_EQ(input_error([&] { (void)run(model_of(ActivationForm::continuous, Nonlinearity::none, StartUp::ceinms), {}, e, 200.0); }),
+  EXPECT_EQ(input_error([&] {
+              (void)run(model_of(ActivationForm::continuous, Nonlinearity::none, StartUp::ceinms), {}, e,
+                        200.0);
+            }),
             "out-of-range: start-up `ceinms` belongs to the `recursive` form only");
 }
 

@@ -21,10 +21,13 @@ TEST(Butterworth, GainAtTheStatedEdgesIsRootHalfForEveryKindOrderPhaseAndRate) {
     for (int order = 1; order <= 6; ++order) {
       for (const Phase phase : {Phase::zero_lag, Phase::causal}) {
         for (const double edge : {3.0, 6.0, 30.0, 0.225 * rate, 0.45 * rate}) {
-          EXPECT_NEAR(design(with(FilterSpec::low_pass(edge, order), phase), rate).gain(edge), root_half, 1e-9);
-          EXPECT_NEAR(design(with(FilterSpec::high_pass(edge, order), phase), rate).gain(edge), root_half, 1e-9);
+          EXPECT_NEAR(design(with(FilterSpec::low_pass(edge, order), phase), rate).gain(edge), root_half,
+                      1e-9);
+          EXPECT_NEAR(design(with(FilterSpec::high_pass(edge, order), phase), rate).gain(edge), root_half,
+                      1e-9);
         }
-        const DesignedFilter band = design(with(FilterSpec::band_pass(20.0, 0.45 * rate, order), phase), rate);
+        const DesignedFilter band =
+            design(with(FilterSpec::band_pass(20.0, 0.45 * rate, order), phase), rate);
         EXPECT_NEAR(band.gain(20.0), root_half, 1e-9) << rate << " " << order;
         EXPECT_NEAR(band.gain(0.45 * rate), root_half, 1e-9) << rate << " " << order;
       }
@@ -103,7 +106,8 @@ TEST(Notch, RemovesEachHarmonicAndItsHalfPowerWidthIsTheStatedOne) {
   EXPECT_EQ(many.sections.size(), 8u);
   EXPECT_EQ(many.left_out_hz, (std::vector<double>{540.0, 600.0}));
   for (int k = 1; k <= 8; ++k) EXPECT_NEAR(many.gain(60.0 * k), 0.0, 1e-12);
-  EXPECT_THAT(describe(many).description, testing::HasSubstr("left out, too close to half the sampling rate: 540, 600 Hz"));
+  EXPECT_THAT(describe(many).description,
+              testing::HasSubstr("left out, too close to half the sampling rate: 540, 600 Hz"));
 }
 
 TEST(Butterworth, CausalGroupDelayAtZeroFrequencyEqualsScipys) {
@@ -118,7 +122,8 @@ TEST(Butterworth, ReportNamesOrderPhaseAndEdges) {
   EXPECT_EQ(describe(design(FilterSpec::low_pass(6.0), 1000.0)).description,
             "low_pass Butterworth, effective order 4, zero lag, -3 dB after all passes at 6 Hz");
   EXPECT_EQ(describe(design(with(FilterSpec::band_pass(20.0, 400.0), Phase::causal), 2000.0)).description,
-            "band_pass Butterworth, effective order 2, causal, group delay 1.112 ms at 89.44 Hz, -3 dB after all passes "
+            "band_pass Butterworth, effective order 2, causal, group delay 1.112 ms at 89.44 Hz, -3 dB after "
+            "all passes "
             "at 20, 400 Hz");
 }
 
@@ -134,12 +139,14 @@ TEST(Butterworth, TransientEndsWithinTheStatedTime) {
 }
 
 TEST(Butterworth, MistakesAreReportedAtOnceAndByName) {
-  EXPECT_EQ(input_error([] { (void)design(FilterSpec::low_pass(600.0), 1000.0); }),
-            "cutoff-above-nyquist: `high_hz` = 600 Hz is not below 500 Hz, half the sampling rate of 1000 Hz");
-  EXPECT_EQ(input_error([] { (void)design(FilterSpec::band_pass(-1.0, 500.0, 0), 1000.0); }),
-            "out-of-range: `order` = 0 must lie between 1 and 10\n"
-            "out-of-range: `low_hz` = -1 Hz must be > 0\n"
-            "cutoff-above-nyquist: `high_hz` = 500 Hz is not below 500 Hz, half the sampling rate of 1000 Hz");
+  EXPECT_EQ(
+      input_error([] { (void)design(FilterSpec::low_pass(600.0), 1000.0); }),
+      "cutoff-above-nyquist: `high_hz` = 600 Hz is not below 500 Hz, half the sampling rate of 1000 Hz");
+  EXPECT_EQ(
+      input_error([] { (void)design(FilterSpec::band_pass(-1.0, 500.0, 0), 1000.0); }),
+      "out-of-range: `order` = 0 must lie between 1 and 10\n"
+      "out-of-range: `low_hz` = -1 Hz must be > 0\n"
+      "cutoff-above-nyquist: `high_hz` = 500 Hz is not below 500 Hz, half the sampling rate of 1000 Hz");
   EXPECT_EQ(input_error([] { (void)design(FilterSpec::band_pass(300.0, 30.0), 1000.0); }),
             "out-of-range: `low_hz` = 300 Hz must lie below `high_hz` = 30 Hz");
   EXPECT_EQ(input_error([] { (void)design(FilterSpec::low_pass(std::nan("")), 1000.0); }),

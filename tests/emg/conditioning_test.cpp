@@ -19,7 +19,8 @@ struct Conditioned {
   std::vector<double> offsets;
 };
 
-Conditioned run(const ConditioningOptions& options, double rate, std::vector<double> x, ConditioningSteps* steps = nullptr) {
+Conditioned run(const ConditioningOptions& options, double rate, std::vector<double> x,
+                ConditioningSteps* steps = nullptr) {
   const ConditioningChain chain = design_conditioning(options, rate);
   const std::span<double> channel(x);
   const std::string name = "BIC";
@@ -42,7 +43,8 @@ TEST(Conditioning, EnvelopeOfAConstantContractionIsItsMeanRectifiedValue) {
   ConditioningOptions options;
   options.highpass_hz = 1.0;  // almost all of the power passes
   const Conditioned result = run(options, 2000.0, constant_emg(60.0));
-  const double mean = std::accumulate(result.envelope.begin(), result.envelope.end(), 0.0) / static_cast<double>(result.envelope.size());
+  const double mean = std::accumulate(result.envelope.begin(), result.envelope.end(), 0.0) /
+                      static_cast<double>(result.envelope.size());
   EXPECT_NEAR(mean, 0.5e-3 * std::sqrt(2.0 / std::numbers::pi), 0.01 * 0.5e-3);
 }
 
@@ -119,7 +121,8 @@ TEST(Conditioning, WhatIsKeptDoesNotDependOnWhatWasRecordedBeforeAndAfter) {
   const Conditioned whole = run(options, 2000.0, x);
   const Conditioned part = run(options, 2000.0, {x.begin() + 4000, x.end() - 4000});
   double worst = 0.0;
-  for (std::size_t k = 0; k < part.envelope.size(); ++k) worst = std::max(worst, std::abs(part.envelope[k] - whole.envelope[4000 + k]));
+  for (std::size_t k = 0; k < part.envelope.size(); ++k)
+    worst = std::max(worst, std::abs(part.envelope[k] - whole.envelope[4000 + k]));
   EXPECT_LT(worst / tests::largest(whole.envelope), 5e-3);
 }
 
@@ -133,7 +136,8 @@ TEST(Conditioning, CausalChainDelaysByItsReportedGroupDelay) {
   const ConditioningChain chain = design_conditioning(options, 1000.0);
   EXPECT_EQ(chain.edge_end_samples, 0u);
   std::vector<double> x(4000);
-  for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::sin(2 * std::numbers::pi * 0.5 * static_cast<double>(k) / 1000.0);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    x[k] = std::sin(2 * std::numbers::pi * 0.5 * static_cast<double>(k) / 1000.0);
   const Conditioned result = run(options, 1000.0, x);
   for (std::size_t k = 2000; k < 4000; ++k) {
     const double t = static_cast<double>(k) / 1000.0 - chain.group_delay_s;
@@ -147,17 +151,22 @@ TEST(OutputRate, WholeRatiosPickSamplesAndOthersInterpolateBandLimited) {
   tenth.output_rate_hz = 200.0;
   odd.output_rate_hz = 300.0;
   const Conditioned at2000 = run(full, 2000.0, x), at200 = run(tenth, 2000.0, x), at300 = run(odd, 2000.0, x);
-  for (std::size_t k = 0; k < at200.envelope.size(); ++k) ASSERT_EQ(at200.envelope[k], at2000.envelope[10 * k]);
+  for (std::size_t k = 0; k < at200.envelope.size(); ++k)
+    ASSERT_EQ(at200.envelope[k], at2000.envelope[10 * k]);
   EXPECT_EQ(at300.layout.count, (at2000.layout.count - 1) * 3 / 20 + 1);
   // Sample 3 m of 300 Hz is sample 20 m of 2000 Hz.
-  for (std::size_t m = 0; 3 * m < at300.envelope.size(); ++m) ASSERT_NEAR(at300.envelope[3 * m], at2000.envelope[20 * m], 1e-9);
+  for (std::size_t m = 0; 3 * m < at300.envelope.size(); ++m)
+    ASSERT_NEAR(at300.envelope[3 * m], at2000.envelope[20 * m], 1e-9);
   // In between: cubic interpolation of the dense envelope, whose own error is far smaller.
   for (std::size_t k = 9; k + 30 < at300.envelope.size(); ++k) {
     const double p = static_cast<double>(k) * 20.0 / 3.0;
     const auto i = static_cast<std::size_t>(p);
     const double s = p - static_cast<double>(i);
-    const double *y = &at2000.envelope[i - 1];
-    const double cubic = y[1] + 0.5 * s * (y[2] - y[0] + s * (2 * y[0] - 5 * y[1] + 4 * y[2] - y[3] + s * (3 * (y[1] - y[2]) + y[3] - y[0])));
+    const double* y = &at2000.envelope[i - 1];
+    const double cubic =
+        y[1] + 0.5 * s *
+                   (y[2] - y[0] +
+                    s * (2 * y[0] - 5 * y[1] + 4 * y[2] - y[3] + s * (3 * (y[1] - y[2]) + y[3] - y[0])));
     ASSERT_NEAR(at300.envelope[k], cubic, 1e-6 * tests::largest(at2000.envelope));
   }
 }
@@ -166,7 +175,8 @@ TEST(OutputRate, TooLowForTheEnvelopeIsRefusedWithTheLowestThatIsNot) {
   ConditioningOptions options;
   options.output_rate_hz = 20.0;
   EXPECT_EQ(input_error([&] { (void)design_conditioning(options, 2000.0); }),
-            "output-rate-too-low: `output_rate_hz` = 20 Hz would fold frequencies above 10 Hz back: the envelope filter "
+            "output-rate-too-low: `output_rate_hz` = 20 Hz would fold frequencies above 10 Hz back: the "
+            "envelope filter "
             "still has a gain of 0.238 there, the limit is 0.01");
 }
 
@@ -174,22 +184,27 @@ TEST(Conditioning, BadInputIsRefusedByName) {
   ConditioningOptions high;
   high.highpass_hz = 600.0;
   high.lowpass_hz = -1.0;
-  EXPECT_EQ(input_error([&] { (void)design_conditioning(high, 1000.0); }),
-            "cutoff-above-nyquist: `highpass_hz` = 600 Hz is not below 500 Hz, half the sampling rate of 1000 Hz\n"
-            "out-of-range: `lowpass_hz` = -1 Hz must be >= 0");
-  EXPECT_EQ(input_error([] { (void)run({}, 2000.0, std::vector<double>(300, 0.0)); }),
-            "trial-too-short: trial `trial` has 300 samples (0.15 s); its filters need at least 1126 (0.563 s)");
+  EXPECT_EQ(
+      input_error([&] { (void)design_conditioning(high, 1000.0); }),
+      "cutoff-above-nyquist: `highpass_hz` = 600 Hz is not below 500 Hz, half the sampling rate of 1000 Hz\n"
+      "out-of-range: `lowpass_hz` = -1 Hz must be >= 0");
+  EXPECT_EQ(
+      input_error([] { (void)run({}, 2000.0, std::vector<double>(300, 0.0)); }),
+      "trial-too-short: trial `trial` has 300 samples (0.15 s); its filters need at least 1126 (0.563 s)");
   ConditioningOptions untrimmed;
   untrimmed.trim_edges = false;
-  EXPECT_EQ(input_error([&] { (void)run(untrimmed, 2000.0, std::vector<double>(9, 0.0)); }),
-            "trial-too-short: trial `trial` has 9 samples (0.0045 s); its filters need at least 10 (0.005 s)");
-  EXPECT_EQ(input_error([] { (void)run({}, 2000.0, std::vector<double>(4000, 1e307)); }),
-            "not-finite: the sum of the samples of channel `BIC` of trial `trial` is beyond the range of numbers");
+  EXPECT_EQ(
+      input_error([&] { (void)run(untrimmed, 2000.0, std::vector<double>(9, 0.0)); }),
+      "trial-too-short: trial `trial` has 9 samples (0.0045 s); its filters need at least 10 (0.005 s)");
+  EXPECT_EQ(
+      input_error([] { (void)run({}, 2000.0, std::vector<double>(4000, 1e307)); }),
+      "not-finite: the sum of the samples of channel `BIC` of trial `trial` is beyond the range of numbers");
   std::vector<double> x = white_noise(4000);
   x[100] = std::nan("");
   x[200] = INFINITY;
   EXPECT_EQ(input_error([&] { (void)run({}, 2000.0, x); }),
-            "not-finite: channel `BIC` of trial `trial` has 2 samples that are not finite, the first, nan, at 0.05 s");
+            "not-finite: channel `BIC` of trial `trial` has 2 samples that are not finite, the first, nan, "
+            "at 0.05 s");
 }
 
 TEST(Streaming, GivesTheBitsOfTheWholeInMemoryForAnyMemoryBudget) {
@@ -230,7 +245,8 @@ TEST(Streaming, GivesTheBitsOfTheWholeInMemoryForAnyMemoryBudget) {
   const data::MemorySession mixed(session);
   data::MemorySession sink;
   EXPECT_EQ(input_error([&] { (void)condition_trial(options, mixed, 0, signals, sink); }),
-            "rate-mismatch: signals `emg0` and `emg3` of trial `curl` differ: 3000 samples at 1000 Hz, 3000 samples at 500 Hz");
+            "rate-mismatch: signals `emg0` and `emg3` of trial `curl` differ: 3000 samples at 1000 Hz, 3000 "
+            "samples at 500 Hz");
 }
 
 }  // namespace

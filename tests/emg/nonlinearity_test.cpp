@@ -12,7 +12,8 @@ using tests::input_error;
 TEST(Exponential, EqualsItsDefinition) {
   for (const double A : {-3.0, -1.5, -0.1, -1e-2}) {
     for (const double u : {0.0, 0.1, 0.5, 0.9, 1.0, 1.3}) {
-      EXPECT_NEAR(ShapedNonlinearity(Nonlinearity::exponential, A)(u), (std::exp(A * u) - 1.0) / (std::exp(A) - 1.0), 1e-13);
+      EXPECT_NEAR(ShapedNonlinearity(Nonlinearity::exponential, A)(u),
+                  (std::exp(A * u) - 1.0) / (std::exp(A) - 1.0), 1e-13);
     }
   }
 }

@@ -45,7 +45,8 @@ TEST(Reference, OverOrdinaryTrialsWarnsAndNoneSaysThatTheGainIsFitted) {
   ASSERT_EQ(r.diagnostics.size(), 1u);
   EXPECT_EQ(r.diagnostics[0].severity, data::Severity::warning);
   EXPECT_EQ(r.diagnostics[0].message,
-            "channel `BIC` is normalised by its maximum over 1 trials, not by an MVC: excitations cannot be compared "
+            "channel `BIC` is normalised by its maximum over 1 trials, not by an MVC: excitations cannot be "
+            "compared "
             "between channels, days or people");
   options.method = Normalisation::none;
   EXPECT_EQ(find_reference("BIC", {}, options).value, 1.0);
@@ -56,12 +57,17 @@ TEST(Reference, RefusesAbsentMvcShortTrialsAndSilentChannels) {
   EXPECT_EQ(input_error([&] { (void)find_reference("BIC", {}, options); }),
             "mvc-absent: channel `BIC` has no MVC trial to normalise by");
   const std::vector<double> zero(400, 0.0), brief(20, 1.0);
-  EXPECT_EQ(input_error([&] { (void)find_reference("BIC", std::vector<EnvelopeView>{{"mvc-1", zero, 100.0, 0.0}}, options); }),
+  EXPECT_EQ(input_error([&] {
+              (void)find_reference("BIC", std::vector<EnvelopeView>{{"mvc-1", zero, 100.0, 0.0}}, options);
+            }),
             "constant-channel: the largest envelope of channel `BIC` is 0: there is nothing to normalise by");
-  EXPECT_EQ(input_error([&] { (void)find_reference("BIC", std::vector<EnvelopeView>{{"mvc-1", brief, 100.0, 0.0}}, options); }),
+  EXPECT_EQ(input_error([&] {
+              (void)find_reference("BIC", std::vector<EnvelopeView>{{"mvc-1", brief, 100.0, 0.0}}, options);
+            }),
             "trial-too-short: trial `mvc-1` has 0.2 s of channel `BIC`, the normalisation's window is 0.5 s");
   options.window_s = -1.0;
-  EXPECT_EQ(input_error([&] { (void)find_reference("BIC", {}, options); }), "out-of-range: `window_s` = -1 must be >= 0");
+  EXPECT_EQ(input_error([&] { (void)find_reference("BIC", {}, options); }),
+            "out-of-range: `window_s` = -1 must be >= 0");
 }
 
 TEST(Normalise, CountsAndTimesExcitationsAboveOneAndClampsNothing) {
@@ -74,7 +80,8 @@ TEST(Normalise, CountsAndTimesExcitationsAboveOneAndClampsNothing) {
   EXPECT_DOUBLE_EQ(excess.intervals[0].from_s, 5.2);
   EXPECT_DOUBLE_EQ(excess.intervals[0].to_s, 5.3);
   EXPECT_DOUBLE_EQ(x[5], 1.5);
-  EXPECT_EQ(input_error([&] { (void)normalise(x, 0.0, 10.0, 0.0); }), "out-of-range: the reference `0` must be > 0");
+  EXPECT_EQ(input_error([&] { (void)normalise(x, 0.0, 10.0, 0.0); }),
+            "out-of-range: the reference `0` must be > 0");
 }
 
 // Known statistics of white noise limited to 30-450 Hz (statistical bandwidth 420 Hz): CV 9 % at 6 Hz; a .5 s window
@@ -103,7 +110,8 @@ TEST(ExpectedBias, PredictsWhatSyntheticEmgOfAConstantContractionShows) {
     const double truth = emg.mean_rectified_at_unit_V;
     window += (moving_window_maximum(plateau, 2000.0, 0.5).value / truth - 1.0) / seeds;
     sample += (moving_window_maximum(plateau, 2000.0, 0.0).value / truth - 1.0) / seeds;
-    for (const double e : plateau) variation += std::pow(e / truth - 1.0, 2) / static_cast<double>(plateau.size()) / seeds;
+    for (const double e : plateau)
+      variation += std::pow(e / truth - 1.0, 2) / static_cast<double>(plateau.size()) / seeds;
   }
   EXPECT_NEAR(std::sqrt(variation), envelope_variation(0.0, 6.0, 190.0), 0.01);
   EXPECT_NEAR(window, expected_bias(0.5, 6.0, 3.0, 1, 190.0), 0.02);

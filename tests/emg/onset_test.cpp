@@ -63,7 +63,8 @@ TEST(Onset, RestMayBeNamedOrIsFound) {
   EXPECT_EQ(named.bursts.size(), 2u);
   options.baseline_to_s = 50.0;
   EXPECT_THAT(input_error([&] { (void)detect_onsets(bursts(30.0, 1), 2000.0, 0.0, "BIC", options); }),
-              testing::HasSubstr("out-of-range: the baseline 0.5 s to 50 s of channel `BIC` must lie inside the trial"));
+              testing::HasSubstr(
+                  "out-of-range: the baseline 0.5 s to 50 s of channel `BIC` must lie inside the trial"));
 }
 
 TEST(Onset, ShortBurstsAndGapsDoNotCount) {
@@ -86,8 +87,10 @@ TEST(Onset, BadInputIsRefusedByName) {
             "constant-channel: channel `BIC` does not vary at rest (0 s to 0.5 s): no threshold can be set");
   std::vector<double> x = tests::white_noise(3000);
   x[5] = INFINITY;
-  EXPECT_EQ(input_error([&] { (void)detect_onsets(x, 1000.0, 0.0, "BIC", {}); }), "not-finite: channel `BIC` is `inf` at sample 5");
-  EXPECT_EQ(input_error([] { (void)parse_onset_method("teo"); }), "unknown-onset-method: `teo` is not a method of onset detection");
+  EXPECT_EQ(input_error([&] { (void)detect_onsets(x, 1000.0, 0.0, "BIC", {}); }),
+            "not-finite: channel `BIC` is `inf` at sample 5");
+  EXPECT_EQ(input_error([] { (void)parse_onset_method("teo"); }),
+            "unknown-onset-method: `teo` is not a method of onset detection");
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 namespace brachium::emg {
 namespace {
 
-using tests::input_error;
 using testing::Contains;
 using testing::HasSubstr;
+using tests::input_error;
 
 // Rest, contraction, rest: 2 s each.
 std::vector<double> excitation() {
@@ -72,7 +72,8 @@ TEST(Quality, DropoutsAreCountedWithTheirShareAndLongestRun) {
 
 TEST(Quality, LineShareIsThePowerOfTheHumOverAllPower) {
   std::vector<double> x = tests::white_noise(20000);
-  for (std::size_t k = 0; k < x.size(); ++k) x[k] += std::sin(2 * std::numbers::pi * 60.0 * static_cast<double>(k) / 1000.0);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    x[k] += std::sin(2 * std::numbers::pi * 60.0 * static_cast<double>(k) / 1000.0);
   QualityOptions options;
   options.line_hz = 0.0;
   const ChannelQuality q = assess(x, 1000.0, "t", "BIC", options);
@@ -86,7 +87,8 @@ TEST(Quality, ConstantFlatAndNonFiniteChannelsAreNamed) {
   EXPECT_EQ(constant.reasons, std::vector<std::string>{"constant: every sample is 0.25"});
   std::vector<double> x = tests::white_noise(4000);
   std::fill(x.begin() + 1000, x.end() - 500, x[1000]);
-  EXPECT_THAT(assess(x, 1000.0, "t", "BIC", {}).reasons, Contains(HasSubstr("flat line: 62.5 % of the trial")));
+  EXPECT_THAT(assess(x, 1000.0, "t", "BIC", {}).reasons,
+              Contains(HasSubstr("flat line: 62.5 % of the trial")));
   x[7] = std::nan("");
   EXPECT_EQ(assess(x, 1000.0, "t", "BIC", {}).reasons, std::vector<std::string>{"1 samples are not finite"});
 }
@@ -101,7 +103,8 @@ TEST(Quality, TooShortATrialAndBadOptionsAreRefused) {
 }
 
 TEST(Quality, TableHasOneRowPerChannelAndTrial) {
-  const std::vector<ChannelQuality> rows{judged(clean_options()), assess(std::vector<double>(4000, 0.25), 1000.0, "t", "BRA", {})};
+  const std::vector<ChannelQuality> rows{judged(clean_options()),
+                                         assess(std::vector<double>(4000, 0.25), 1000.0, "t", "BRA", {})};
   const data::Table table = quality_table(rows);
   EXPECT_EQ(table.rows(), 2u);
   EXPECT_EQ(table.texts("verdict"), (std::vector<std::string>{"good", "BAD"}));
@@ -111,7 +114,10 @@ TEST(Quality, TableHasOneRowPerChannelAndTrial) {
 TEST(Welch, EqualsScipys) {
   const Periodogram p = welch(tests::chirp(), 1000.0, 0.256);
   ASSERT_EQ(p.density.size(), 129u);
-  const std::vector<std::pair<std::size_t, double>> reference{{0, 0.016660168261836843}, {1, 0.06409160671943613}, {3, 0.0003754926644129881}, {45, 0.006709443833484486}};
+  const std::vector<std::pair<std::size_t, double>> reference{{0, 0.016660168261836843},
+                                                              {1, 0.06409160671943613},
+                                                              {3, 0.0003754926644129881},
+                                                              {45, 0.006709443833484486}};
   for (const auto& [k, value] : reference) EXPECT_NEAR(p.density[k], value, 1e-12);
   EXPECT_DOUBLE_EQ(p.resolution_hz, 1000.0 / 256);
 }

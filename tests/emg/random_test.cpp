@@ -7,10 +7,15 @@ namespace {
 
 // scipy.special.ndtri, printed by `scipy_reference.py numbers`.
 TEST(NormalQuantile, EqualsScipys) {
-  const std::vector<std::pair<double, double>> pairs{
-      {1e-300, -37.0470962993612},  {1e-9, -5.9978070150076865}, {0.01, -2.3263478740408408}, {0.2, -0.8416212335729142},
-      {0.5, 0.0},                   {0.6, 0.2533471031357997},   {0.975, 1.959963984540054}};
-  for (const auto& [p, z] : pairs) EXPECT_NEAR(normal_quantile(p), z, 4e-15 * std::max(1.0, std::abs(z))) << p;
+  const std::vector<std::pair<double, double>> pairs{{1e-300, -37.0470962993612},
+                                                     {1e-9, -5.9978070150076865},
+                                                     {0.01, -2.3263478740408408},
+                                                     {0.2, -0.8416212335729142},
+                                                     {0.5, 0.0},
+                                                     {0.6, 0.2533471031357997},
+                                                     {0.975, 1.959963984540054}};
+  for (const auto& [p, z] : pairs)
+    EXPECT_NEAR(normal_quantile(p), z, 4e-15 * std::max(1.0, std::abs(z))) << p;
 }
 
 TEST(PortableLog, EqualsTheLibrarysWithinAnUlpOrTwo) {

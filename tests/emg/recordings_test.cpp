@@ -14,7 +14,8 @@ using tests::scipy;
 std::vector<double> plux(const std::string& name) {
   const auto out = tests::scratch_dir() / "channel";
   const std::string file = (tests::sessions_dir() / "biceps_emg/plux" / name).string();
-  const std::string command = "/usr/bin/python3 '" + tests::script() + "' hdf5 '" + file + "' '" + out.string() + "'";
+  const std::string command =
+      "/usr/bin/python3 '" + tests::script() + "' hdf5 '" + file + "' '" + out.string() + "'";
   if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
   return tests::read_doubles(out);
 }
@@ -35,7 +36,8 @@ TEST(Recordings, PerPassEnvelopeOfTheBicepsEqualsScipysSosfiltfiltTo1eMinus9) {
   BRACHIUM_NEEDS_SESSIONS();
   BRACHIUM_NEEDS_SCIPY();
   const auto compare = [](const std::vector<double>& x, double rate, const std::string& arguments) {
-    const double difference = relative_difference(per_pass_envelope(x, rate), scipy("envelope", x, arguments));
+    const double difference =
+        relative_difference(per_pass_envelope(x, rate), scipy("envelope", x, arguments));
     EXPECT_LT(difference, 1e-9);
     ::testing::Test::RecordProperty("relative_difference", std::to_string(difference * 1e12) + "e-12");
   };

@@ -36,7 +36,8 @@ inline std::vector<double> white_noise(std::size_t n, unsigned seed = 1) {
 
 inline void write_doubles(const std::filesystem::path& file, const std::vector<double>& x) {
   std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(x.data()), static_cast<std::streamsize>(x.size() * sizeof(double)));
+      .write(reinterpret_cast<const char*>(x.data()),
+             static_cast<std::streamsize>(x.size() * sizeof(double)));
 }
 
 inline std::vector<double> read_doubles(const std::filesystem::path& file) {
@@ -47,14 +48,17 @@ inline std::vector<double> read_doubles(const std::filesystem::path& file) {
   return x;
 }
 
-inline std::string script() { return (source_dir() / "tests/emg/scipy_reference.py").string(); }
+inline std::string script() {
+  return (source_dir() / "tests/emg/scipy_reference.py").string();
+}
 
 /// A signal through scipy_reference.py; `rest` are the arguments after IN and OUT.
-inline std::vector<double> scipy(const std::string& mode, const std::vector<double>& x, const std::string& rest) {
+inline std::vector<double> scipy(const std::string& mode, const std::vector<double>& x,
+                                 const std::string& rest) {
   const std::filesystem::path dir = scratch_dir();
   write_doubles(dir / "in", x);
-  const std::string command = "/usr/bin/python3 '" + script() + "' " + mode + " '" + (dir / "in").string() + "' '" +
-                              (dir / "out").string() + "' " + rest;
+  const std::string command = "/usr/bin/python3 '" + script() + "' " + mode + " '" + (dir / "in").string() +
+                              "' '" + (dir / "out").string() + "' " + rest;
   if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
   return read_doubles(dir / "out");
 }
@@ -97,7 +101,8 @@ std::string input_error(Action action) {
     action();
   } catch (const data::InputError& e) {
     std::string text;
-    for (const data::Diagnostic& d : e.diagnostics()) text += (text.empty() ? "" : "\n") + d.code + ": " + d.message;
+    for (const data::Diagnostic& d : e.diagnostics())
+      text += (text.empty() ? "" : "\n") + d.code + ": " + d.message;
     return text;
   }
   return "no error";

@@ -10,7 +10,9 @@ namespace {
 
 using tests::input_error;
 
-std::vector<double> ones(double seconds) { return std::vector<double>(static_cast<std::size_t>(seconds * 100) + 1, 1.0); }
+std::vector<double> ones(double seconds) {
+  return std::vector<double>(static_cast<std::size_t>(seconds * 100) + 1, 1.0);
+}
 
 double rms(const std::vector<double>& x) {
   double sum = 0.0;
@@ -35,7 +37,8 @@ TEST(SyntheticEmg, HasTheStatedSpectrum) {
     return band * std::pow(fh, 4) * f * f / ((f * f + fl * fl) * std::pow(f * f + fh * fh, 2));
   };
   const double reference = p.density[20] / P(80.0);
-  for (const std::size_t bin : {8u, 15u, 25u, 40u, 60u}) {  // 32 to 240 Hz: below, the bilinear warping is small
+  for (const std::size_t bin :
+       {8u, 15u, 25u, 40u, 60u}) {  // 32 to 240 Hz: below, the bilinear warping is small
     const double f = static_cast<double>(bin) * p.resolution_hz;
     EXPECT_NEAR(p.density[bin] / (reference * P(f)), 1.0, 0.15) << f << " Hz";
   }
@@ -109,7 +112,9 @@ TEST(SyntheticEmg, BadOptionsAreRefusedAtOnce) {
   options.amplitude_V = 0.0;
   options.band_high_hz = 1000.0;
   options.dropout_s = -1.0;
-  EXPECT_EQ(input_error([&] { (void)synthesise_emg(std::vector<double>{0.1, -0.1}, 100.0, options); }),
+  EXPECT_EQ(input_error([&] {
+              (void)synthesise_emg(std::vector<double>{0.1, -0.1}, 100.0, options);
+            }),
             "out-of-range: `amplitude_V` = 0 must be > 0\n"
             "out-of-range: `band_high_hz` = 1000 must lie below half the rate\n"
             "out-of-range: `dropout_s` = -1 must be > 0\n"

@@ -22,11 +22,11 @@ MatrixXd classical(const tests::ToyProblem& problem, const VectorXd& x, double s
 // r = f(x) v: the likelihood-ratio interval is f^-1(f(x) +- t sd / |v|).
 TEST(ProfileIntervals, OfOneParameterAreLikelihoodRatioIntervals) {
   const VectorXd v = VectorXd::LinSpaced(40, 0.5, 1.5);
-  const tests::ToyProblem problem(
-      {tests::toy_parameter("x", 1.0, -3.0, 5.0)}, 40, [&](const VectorXd& x, VectorXd& r, MatrixXd* J) {
-        r = std::exp(x[0]) * v;
-        if (J) *J = r;
-      });
+  const tests::ToyProblem problem({tests::toy_parameter("x", 1.0, -3.0, 5.0)}, 40,
+                                  [&](const VectorXd& x, VectorXd& r, MatrixXd* J) {
+                                    r = std::exp(x[0]) * v;
+                                    if (J) *J = r;
+                                  });
   const VectorXd x = VectorXd::Constant(1, 1.0);
   const double sd = 5.5, t = 2.0, reach = t * sd / v.norm();
   const MatrixXd C = classical(problem, x, sd);
@@ -71,8 +71,9 @@ TEST(ProfileIntervals, DoNotDependOnHowTheParameterIsWritten) {
     return std::vector{tests::toy_parameter("rate", start, lower, upper),
                        tests::toy_parameter("size", 2.0, 0.1, 10.0)};
   };
-  const tests::ToyProblem plain(parameters(1.0, 0.01, 20.0), 30,
-                                [&](const VectorXd& x, VectorXd& r, MatrixXd* J) { model(x[0], x[1], 1.0, r, J); });
+  const tests::ToyProblem plain(
+      parameters(1.0, 0.01, 20.0), 30,
+      [&](const VectorXd& x, VectorXd& r, MatrixXd* J) { model(x[0], x[1], 1.0, r, J); });
   const tests::ToyProblem logarithm(parameters(0.0, std::log(0.01), std::log(20.0)), 30,
                                     [&](const VectorXd& x, VectorXd& r, MatrixXd* J) {
                                       model(std::exp(x[0]), x[1], std::exp(x[0]), r, J);

@@ -79,8 +79,8 @@ inline ExcitationNoise stochastic_noise(const emg::SyntheticEmgOptions& electrod
   emg::SyntheticEmgOptions clean = electrode;
   clean.snr_db.reset();
   clean.seed = 988;
-  const emg::Periodogram spectrum = emg::welch(
-      emg::synthesise_emg(std::vector<double>(60000, 1.0), 200.0, clean).raw, clean.rate_hz, 0.5);
+  const emg::Periodogram spectrum =
+      emg::welch(emg::synthesise_emg(std::vector<double>(60000, 1.0), 200.0, clean).raw, clean.rate_hz, 0.5);
   std::vector<double> f, emg_power, noise_power;
   double emg_before = 0.0, emg_after = 0.0, noise_before = 0.0, noise_after = 0.0;
   for (std::size_t i = 1; i < spectrum.density.size(); ++i) {
@@ -97,8 +97,8 @@ inline ExcitationNoise stochastic_noise(const emg::SyntheticEmgOptions& electrod
   }
   ExcitationNoise noise;
   noise.coefficient_of_variation = envelope_coefficient_of_variation(f, emg_power, 6.0);
-  const double floor =
-      std::pow(10.0, -*electrode.snr_db / 20.0) * std::sqrt(noise_after / noise_before * emg_before / emg_after);
+  const double floor = std::pow(10.0, -*electrode.snr_db / 20.0) *
+                       std::sqrt(noise_after / noise_before * emg_before / emg_after);
   noise.subtracted_floor = floor;
   noise.overlapping_floor = overlapping_noise_floor(floor, emg_power, noise_power);
   noise.rest_coefficient_of_variation = envelope_coefficient_of_variation(f, noise_power, 6.0);

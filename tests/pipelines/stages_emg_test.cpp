@@ -30,16 +30,19 @@ StageData clipped() {
 TEST(TwinStage, GivesTheSameSessionForTheSameSeedAndItsTruthBesideIt) {
   const StageData again = run("twin.session", protocol);
   EXPECT_EQ(signal(again, "curl", "biceps").samples, signal(recordings(), "curl", "biceps").samples);
-  EXPECT_EQ(signal(truth(), "curl", "joint_moment").samples, signal(recordings(), "curl", "joint_moment").samples);
+  EXPECT_EQ(signal(truth(), "curl", "joint_moment").samples,
+            signal(recordings(), "curl", "joint_moment").samples);
   EXPECT_EQ(again.tables.at("truth").texts("muscle").size(), elbow().muscles.size());
-  EXPECT_EQ(again.tables.at("truth").numbers("tendon_slack_length_m").front(), elbow().muscles.front().parameters.tendon_slack_length_m);
+  EXPECT_EQ(again.tables.at("truth").numbers("tendon_slack_length_m").front(),
+            elbow().muscles.front().parameters.tendon_slack_length_m);
   EXPECT_EQ(recordings().signals->info().trials[0].kind, data::TrialKind::mvc);
   EXPECT_EQ(signal(recordings(), "curl", "biceps").info.unit, "V");
 }
 
 TEST(TwinStage, WithoutRawEmgKeepsMotionAndMomentOnly) {
   const StageData bare = run("twin.session", protocol + "raw_emg = false\n");
-  for (const data::SignalInfo& s : bare.signals->info().trials.back().signals) EXPECT_NE(s.quantity, data::Quantity::emg) << s.name;
+  for (const data::SignalInfo& s : bare.signals->info().trials.back().signals)
+    EXPECT_NE(s.quantity, data::Quantity::emg) << s.name;
   EXPECT_EQ(signal(bare, "curl", "joint_angle").samples, signal(recordings(), "curl", "joint_angle").samples);
 }
 
@@ -51,7 +54,8 @@ TEST(QualityStage, WarnsExcludesOrFailsAsTold) {
   EXPECT_EQ(warned.attributes.at("excluded_channels"), "");
   ASSERT_EQ(warned.diagnostics.size(), 1u);
   EXPECT_EQ(warned.diagnostics[0].severity, data::Severity::warning);
-  EXPECT_THAT(warned.diagnostics[0].message, HasSubstr("channel `biceps` of trial `random-1` is bad: clipping"));
+  EXPECT_THAT(warned.diagnostics[0].message,
+              HasSubstr("channel `biceps` of trial `random-1` is bad: clipping"));
   EXPECT_EQ(warned.tables.at("quality").rows(), 10u);  // two trials of five channels
 
   const StageData without = run("emg.quality", "on_bad = \"exclude\"", input, {"random-*"});
@@ -62,13 +66,17 @@ TEST(QualityStage, WarnsExcludesOrFailsAsTold) {
 
 TEST(QualityStage, AChannelExcludedByNameMustExist) {
   const Inputs input = {{"signals", {&recordings()}}};
-  EXPECT_EQ(run("emg.quality", "exclude = [\"brachialis\"]", input, {"curl"}).attributes.at("excluded_channels"), "brachialis");
-  EXPECT_EQ(error_of([&] { run("emg.quality", "exclude = [\"bicpes\"]", input, {"curl"}); }), "error[no-match]: no EMG channel matches `bicpes`\n  help: did you mean `biceps`?\n");
+  EXPECT_EQ(
+      run("emg.quality", "exclude = [\"brachialis\"]", input, {"curl"}).attributes.at("excluded_channels"),
+      "brachialis");
+  EXPECT_EQ(error_of([&] { run("emg.quality", "exclude = [\"bicpes\"]", input, {"curl"}); }),
+            "error[no-match]: no EMG channel matches `bicpes`\n  help: did you mean `biceps`?\n");
 }
 
 TEST(QualityStage, RestIsNotJudgedByItsActivity) {
   const StageData quality = run("emg.quality", "", {{"signals", {&recordings()}}}, {"sweep"});
-  for (const data::Diagnostic& d : quality.diagnostics) EXPECT_EQ(d.message.find("SNR"), std::string::npos) << d.message;
+  for (const data::Diagnostic& d : quality.diagnostics)
+    EXPECT_EQ(d.message.find("SNR"), std::string::npos) << d.message;
 }
 
 TEST(EnvelopeStage, NormalisedByMvcIsTheEnvelopeOverItsReference) {
@@ -87,7 +95,8 @@ TEST(EnvelopeStage, NormalisedByMvcIsTheEnvelopeOverItsReference) {
     EXPECT_EQ(e.info.rate_hz, 200.0);
     EXPECT_GT(e.info.start_time_s, 0.0);  // trimmed, and said
     const double reference = table.numbers("reference_V")[row];
-    for (std::size_t i = 0; i < e.samples.size(); ++i) ASSERT_NEAR(e.samples[i] * reference, v.samples[i], 1e-15);
+    for (std::size_t i = 0; i < e.samples.size(); ++i)
+      ASSERT_NEAR(e.samples[i] * reference, v.samples[i], 1e-15);
   }
   EXPECT_THAT(scaled.attributes.at("trimmed"), HasSubstr("s at the start and"));
 }
@@ -95,17 +104,21 @@ TEST(EnvelopeStage, NormalisedByMvcIsTheEnvelopeOverItsReference) {
 double expected_bias(const StageData& envelopes, const std::string& channel) {
   const data::Table& table = envelopes.tables.at("normalisation");
   const auto& names = table.texts("channel");
-  return table.numbers("expected_bias").at(static_cast<std::size_t>(std::find(names.begin(), names.end(), channel) - names.begin()));
+  return table.numbers("expected_bias")
+      .at(static_cast<std::size_t>(std::find(names.begin(), names.end(), channel) - names.begin()));
 }
 
 TEST(EnvelopeStage, FollowsTheTrueExcitation) {
-  const StageData e = run("emg.envelope", "output_rate_hz = 200", {{"signals", {&recordings()}}}, {"random-*"});
+  const StageData e =
+      run("emg.envelope", "output_rate_hz = 200", {{"signals", {&recordings()}}}, {"random-*"});
   for (const char* channel : {"biceps", "triceps_long", "brachialis"}) {
-    const data::Signal envelope = signal(e, "random-1", channel), exact = signal(truth(), "random-1", channel);
+    const data::Signal envelope = signal(e, "random-1", channel),
+                       exact = signal(truth(), "random-1", channel);
     const auto first = static_cast<std::size_t>(std::lround(envelope.info.start_time_s * 200.0));
     ASSERT_LE(first + envelope.samples.size(), exact.samples.size());
-    const std::vector<double> same(exact.samples.begin() + static_cast<std::ptrdiff_t>(first),
-                                   exact.samples.begin() + static_cast<std::ptrdiff_t>(first + envelope.samples.size()));
+    const std::vector<double> same(
+        exact.samples.begin() + static_cast<std::ptrdiff_t>(first),
+        exact.samples.begin() + static_cast<std::ptrdiff_t>(first + envelope.samples.size()));
     // The largest mean of noise in the MVC is above the true one, by as much as the stage says to expect.
     EXPECT_NEAR(mean(envelope.samples) * (1.0 + expected_bias(e, channel)) / mean(same), 1.0, 0.1) << channel;
     double ee = 0.0, tt = 0.0, et = 0.0;
@@ -120,7 +133,9 @@ TEST(EnvelopeStage, FollowsTheTrueExcitation) {
 }
 
 TEST(EnvelopeStage, OverTheMaximumOfAllTrialsNothingExceedsOneByMoreThanTheWindowHides) {
-  const StageData e = run("emg.envelope", "normalise = \"trials_maximum\"\nreference_window_s = 0.0\noutput_rate_hz = 0", {{"signals", {&recordings()}}}, moving);
+  const StageData e =
+      run("emg.envelope", "normalise = \"trials_maximum\"\nreference_window_s = 0.0\noutput_rate_hz = 0",
+          {{"signals", {&recordings()}}}, moving);
   EXPECT_FALSE(e.tables.contains("above_one"));
   double largest = 0.0;
   for (const data::TrialInfo& trial : e.signals->info().trials) {
@@ -133,28 +148,36 @@ TEST(EnvelopeStage, OverTheMaximumOfAllTrialsNothingExceedsOneByMoreThanTheWindo
 }
 
 TEST(EnvelopeStage, ExcitationAboveOneIsListedAndNotClamped) {
-  const StageData e = run("emg.envelope", "reference_trials = [\"weak\"]\noutput_rate_hz = 200", {{"signals", {&recordings()}}}, {"ramp"});
+  const StageData e = run("emg.envelope", "reference_trials = [\"weak\"]\noutput_rate_hz = 200",
+                          {{"signals", {&recordings()}}}, {"ramp"});
   const data::Table& table = e.tables.at("above_one");
   ASSERT_GT(table.rows(), 0u);
   const data::Signal s = signal(e, "ramp", table.texts("channel")[0]);
   EXPECT_DOUBLE_EQ(*std::max_element(s.samples.begin(), s.samples.end()), table.numbers("maximum")[0]);
-  EXPECT_EQ(static_cast<double>(std::count_if(s.samples.begin(), s.samples.end(), [](double v) { return v > 1.0; })), table.numbers("samples")[0]);
+  EXPECT_EQ(static_cast<double>(
+                std::count_if(s.samples.begin(), s.samples.end(), [](double v) { return v > 1.0; })),
+            table.numbers("samples")[0]);
   ASSERT_FALSE(e.diagnostics.empty());
   EXPECT_EQ(e.diagnostics.back().code, "excitation-above-one");
 }
 
 TEST(EnvelopeStage, LeavesOutWhatQualityOrItsOwnOptionExcludes) {
-  const StageData quality = run("emg.quality", "exclude = [\"biceps\"]", {{"signals", {&recordings()}}}, {"curl"});
-  const StageData e = run("emg.envelope", "exclude = [\"brachialis\"]", {{"signals", {&recordings()}}, {"quality", {&quality}}}, {"curl"});
+  const StageData quality =
+      run("emg.quality", "exclude = [\"biceps\"]", {{"signals", {&recordings()}}}, {"curl"});
+  const StageData e = run("emg.envelope", "exclude = [\"brachialis\"]",
+                          {{"signals", {&recordings()}}, {"quality", {&quality}}}, {"curl"});
   std::vector<std::string> names;
   for (const data::SignalInfo& s : e.signals->info().trials.front().signals) names.push_back(s.name);
   EXPECT_THAT(names, ::testing::UnorderedElementsAre("triceps_long", "triceps_lateral", "brachioradialis"));
-  EXPECT_EQ(error_of([&] { run("emg.envelope", "exclude = [\"bicpes\"]", {{"signals", {&recordings()}}}, {"curl"}); }),
-              "error[no-match]: no EMG channel matches `bicpes`\n  help: did you mean `biceps`?\n");
+  EXPECT_EQ(error_of([&] {
+              run("emg.envelope", "exclude = [\"bicpes\"]", {{"signals", {&recordings()}}}, {"curl"});
+            }),
+            "error[no-match]: no EMG channel matches `bicpes`\n  help: did you mean `biceps`?\n");
 }
 
 TEST(OnsetStage, FindsTheContractionsOfTheMvc) {
-  const StageData onsets = run("emg.onset", "channels = [\"biceps\"]", {{"signals", {&recordings()}}}, {"mvc-1"});
+  const StageData onsets =
+      run("emg.onset", "channels = [\"biceps\"]", {{"signals", {&recordings()}}}, {"mvc-1"});
   const data::Table& table = onsets.tables.at("bursts");
   const data::Signal e = signal(truth(), "mvc-1", "biceps");
   std::size_t contractions = 0;
@@ -163,7 +186,8 @@ TEST(OnsetStage, FindsTheContractionsOfTheMvc) {
     ++contractions;
     const double rise = e.info.time_s(i);
     const auto& from = table.numbers("onset_s");
-    EXPECT_TRUE(std::any_of(from.begin(), from.end(), [&](double t) { return t <= rise && t > rise - 0.5; })) << rise;
+    EXPECT_TRUE(std::any_of(from.begin(), from.end(), [&](double t) { return t <= rise && t > rise - 0.5; }))
+        << rise;
   }
   EXPECT_EQ(contractions, 3u);
   EXPECT_EQ(onsets.tables.at("baselines").numbers("bursts")[0], static_cast<double>(table.rows()));
@@ -172,7 +196,10 @@ TEST(OnsetStage, FindsTheContractionsOfTheMvc) {
 TEST(ActivationStage, GivesTheTwinsActivationsFromItsExcitations) {
   const StageData a = run("emg.activation", "", {{"excitation", {&truth()}}}, {"random-1"});
   for (const data::SceneMuscle& muscle : elbow().muscles) {
-    EXPECT_LT(largest_difference(signal(a, "random-1", muscle.name).samples, signal(truth(), "random-1", muscle.name + ".activation").samples), 1e-12) << muscle.name;
+    EXPECT_LT(largest_difference(signal(a, "random-1", muscle.name).samples,
+                                 signal(truth(), "random-1", muscle.name + ".activation").samples),
+              1e-12)
+        << muscle.name;
   }
 }
 
@@ -180,7 +207,9 @@ TEST(ActivationStage, ASubjectBringsItsParametersAndGains) {
   StageData subject = subject_data();
   const Inputs plain = {{"excitation", {&truth()}}, {"subject", {&subject}}};
   const std::vector<double> exact = signal(truth(), "random-1", "BIClong.activation").samples;
-  EXPECT_LT(largest_difference(signal(run("emg.activation", "", plain, {"random-1"}), "random-1", "BIClong").samples, exact), 1e-12);
+  EXPECT_LT(largest_difference(
+                signal(run("emg.activation", "", plain, {"random-1"}), "random-1", "BIClong").samples, exact),
+            1e-12);
 
   subject.subject->channel_gains = {{"biceps", 2.0}};
   const StageData halved = changed(truth(), [](data::Session& session) {
@@ -189,11 +218,20 @@ TEST(ActivationStage, ASubjectBringsItsParametersAndGains) {
         if (s.info.name == "biceps")
           for (double& v : s.samples) v *= 0.5;
   });
-  EXPECT_LT(largest_difference(signal(run("emg.activation", "", {{"excitation", {&halved}}, {"subject", {&subject}}}, {"random-1"}), "random-1", "BIClong").samples, exact), 1e-12);
+  EXPECT_LT(largest_difference(signal(run("emg.activation", "",
+                                          {{"excitation", {&halved}}, {"subject", {&subject}}}, {"random-1"}),
+                                      "random-1", "BIClong")
+                                   .samples,
+                               exact),
+            1e-12);
 
   for (data::SubjectMuscle& m : subject.subject->muscles) m.activation.delay_s += 0.1;  // 20 frames at 200 Hz
-  const std::vector<double> late = signal(run("emg.activation", "", {{"excitation", {&halved}}, {"subject", {&subject}}}, {"random-1"}), "random-1", "BIClong").samples;
-  for (std::size_t i = 400; i < exact.size(); ++i) ASSERT_NEAR(late[i], exact[i - 20], 1e-6) << i;  // after the start has decayed
+  const std::vector<double> late =
+      signal(run("emg.activation", "", {{"excitation", {&halved}}, {"subject", {&subject}}}, {"random-1"}),
+             "random-1", "BIClong")
+          .samples;
+  for (std::size_t i = 400; i < exact.size(); ++i)
+    ASSERT_NEAR(late[i], exact[i - 20], 1e-6) << i;  // after the start has decayed
 }
 
 TEST(ActivationStage, CountsWhatExceedsOne) {

@@ -19,9 +19,12 @@ constexpr double g = 9.80665;
 
 TEST(KinematicsStage, WithoutAFilterKeepsTheAngleAndFindsItsVelocity) {
   const StageData k = run("limb.kinematics", "lowpass_hz = 0", {{"signals", {&recordings()}}}, {"random-1"});
-  EXPECT_EQ(signal(k, "random-1", "elbow_flexion").samples, signal(recordings(), "random-1", "joint_angle").samples);
-  const std::vector<double> v = signal(k, "random-1", "elbow_flexion_velocity").samples, exact = signal(recordings(), "random-1", "joint_velocity").samples;
-  for (std::size_t i = 4; i + 4 < v.size(); ++i) ASSERT_NEAR(v[i], exact[i], 1e-5) << i;  // fourth order at 200 Hz
+  EXPECT_EQ(signal(k, "random-1", "elbow_flexion").samples,
+            signal(recordings(), "random-1", "joint_angle").samples);
+  const std::vector<double> v = signal(k, "random-1", "elbow_flexion_velocity").samples,
+                            exact = signal(recordings(), "random-1", "joint_velocity").samples;
+  for (std::size_t i = 4; i + 4 < v.size(); ++i)
+    ASSERT_NEAR(v[i], exact[i], 1e-5) << i;  // fourth order at 200 Hz
   EXPECT_EQ(k.tables.at("ranges").numbers("highest_rad")[0], [&] {
     const std::vector<double> q = signal(recordings(), "random-1", "joint_angle").samples;
     return *std::max_element(q.begin(), q.end());
@@ -29,7 +32,8 @@ TEST(KinematicsStage, WithoutAFilterKeepsTheAngleAndFindsItsVelocity) {
 }
 
 TEST(KinematicsStage, AddsTheOffsetAndChangesTheRateAsTold) {
-  const StageData k = run("limb.kinematics", "lowpass_hz = 0\nangle_offset_deg = 5\noutput_rate_hz = 100", {{"signals", {&recordings()}}}, {"ramp"});
+  const StageData k = run("limb.kinematics", "lowpass_hz = 0\nangle_offset_deg = 5\noutput_rate_hz = 100",
+                          {{"signals", {&recordings()}}}, {"ramp"});
   const data::Signal q = signal(k, "ramp", "elbow_flexion");
   EXPECT_EQ(q.info.rate_hz, 100.0);
   for (double value : q.samples) ASSERT_NEAR(value, 80.0 * deg, 1e-12);
@@ -46,9 +50,12 @@ double first_moment(const data::Scene& scene, double load_kg) {
   return S;
 }
 
-data::Scene loaded_elbow() { return io::read_scene(brachium::tests::source_dir() / "pipelines/scenes/elbow.toml"); }
+data::Scene loaded_elbow() {
+  return io::read_scene(brachium::tests::source_dir() / "pipelines/scenes/elbow.toml");
+}
 
-data::Signal constant(const std::string& name, data::Quantity quantity, const std::string& unit, double value) {
+data::Signal constant(const std::string& name, data::Quantity quantity, const std::string& unit,
+                      double value) {
   data::Signal s;
   s.info.name = name;
   s.info.quantity = quantity;
@@ -70,15 +77,20 @@ StageData at_rest(double q, double load_kg) {
   const double elbow_at[3] = {0.1, 0.2, 1.0}, u[3] = {std::sin(q), 0.0, -std::cos(q)};  // z up
   const char* axis[3] = {"_x", "_y", "_z"};
   for (int k = 0; k < 3; ++k) {
-    trial.signals.push_back(constant(std::string("elbow_position") + axis[k], data::Quantity::position, "m", elbow_at[k]));
+    trial.signals.push_back(
+        constant(std::string("elbow_position") + axis[k], data::Quantity::position, "m", elbow_at[k]));
     const double side = k == 1 ? 0.02 : 0.0;
-    trial.signals.push_back(constant(std::string("radial_styloid_position") + axis[k], data::Quantity::position, "m", elbow_at[k] + 0.25 * u[k] + side));
-    trial.signals.push_back(constant(std::string("ulnar_styloid_position") + axis[k], data::Quantity::position, "m", elbow_at[k] + 0.25 * u[k] - side));
+    trial.signals.push_back(constant(std::string("radial_styloid_position") + axis[k],
+                                     data::Quantity::position, "m", elbow_at[k] + 0.25 * u[k] + side));
+    trial.signals.push_back(constant(std::string("ulnar_styloid_position") + axis[k],
+                                     data::Quantity::position, "m", elbow_at[k] + 0.25 * u[k] - side));
   }
   // The segment's long axis is its -z; a turn by -q about y brings it from straight down to u.
   const double quaternion[4] = {0.0, std::sin(-q / 2.0), 0.0, std::cos(q / 2.0)};
   const char* part[4] = {"_x", "_y", "_z", "_w"};
-  for (int k = 0; k < 4; ++k) trial.signals.push_back(constant(std::string("forearm_orientation") + part[k], data::Quantity::orientation, "1", quaternion[k]));
+  for (int k = 0; k < 4; ++k)
+    trial.signals.push_back(constant(std::string("forearm_orientation") + part[k],
+                                     data::Quantity::orientation, "1", quaternion[k]));
   data::Session session;
   session.trials.push_back(trial);
   return session_data(std::move(session));
@@ -88,10 +100,13 @@ TEST(InverseDynamicsStage, AtRestIsTheWeightOfForearmHandAndLoadForEveryKindOfMo
   const data::Scene scene = loaded_elbow();
   for (const double q : {20.0 * deg, 90.0 * deg, 130.0 * deg}) {
     const StageData session = at_rest(q, 2.0);
-    for (const char* options : {"motion = \"angle\"", "motion = \"points\"", "motion = \"orientation\"\nlong_axis = [0.0, 0.0, -1.0]", "motion = \"orientation\"", ""}) {
+    for (const char* options :
+         {"motion = \"angle\"", "motion = \"points\"",
+          "motion = \"orientation\"\nlong_axis = [0.0, 0.0, -1.0]", "motion = \"orientation\"", ""}) {
       const StageData m = run("limb.inverse_dynamics", options, {{"signals", {&session}}}, {"*"}, scene);
       const double expected = first_moment(scene, 2.0) * g * std::sin(q);
-      for (double value : signal(m, "rest", "elbow_flexion_moment").samples) ASSERT_NEAR(value, expected, 1e-9) << options << " at " << q / deg;
+      for (double value : signal(m, "rest", "elbow_flexion_moment").samples)
+        ASSERT_NEAR(value, expected, 1e-9) << options << " at " << q / deg;
       EXPECT_NEAR(m.tables.at("moment").numbers("first_moment_kg_m")[0], first_moment(scene, 2.0), 1e-12);
     }
   }
@@ -113,31 +128,42 @@ TEST(InverseDynamicsStage, SaysWhatIsAssumedAndHowUncertainItIs) {
 
 TEST(InverseDynamicsStage, WarnsWhereOrientationAndPointsDisagree) {
   const StageData session = at_rest(60.0 * deg, 2.0);
-  const StageData m = run("limb.inverse_dynamics", "motion = \"orientation\"\nlong_axis = [1.0, 0.0, 0.0]", {{"signals", {&session}}}, {"*"}, loaded_elbow());
+  const StageData m = run("limb.inverse_dynamics", "motion = \"orientation\"\nlong_axis = [1.0, 0.0, 0.0]",
+                          {{"signals", {&session}}}, {"*"}, loaded_elbow());
   ASSERT_FALSE(m.diagnostics.empty());
   EXPECT_EQ(m.diagnostics.back().code, "direction-disagreement");
-  EXPECT_EQ(m.diagnostics.back().message, "orientation and points of the forearm differ by 90.0 deg rms in trial `rest`");
+  EXPECT_EQ(m.diagnostics.back().message,
+            "orientation and points of the forearm differ by 90.0 deg rms in trial `rest`");
 }
 
 TEST(InverseDynamicsStage, OfTheTwinsMotionIsItsEquationOfMotion) {
-  const StageData m = run("limb.inverse_dynamics", "lowpass_hz = 20", {{"signals", {&recordings()}}}, {"curl"});
-  const std::vector<double> q = signal(recordings(), "curl", "joint_angle").samples, v = signal(recordings(), "curl", "joint_velocity").samples;
+  const StageData m =
+      run("limb.inverse_dynamics", "lowpass_hz = 20", {{"signals", {&recordings()}}}, {"curl"});
+  const std::vector<double> q = signal(recordings(), "curl", "joint_angle").samples,
+                            v = signal(recordings(), "curl", "joint_velocity").samples;
   const limb::BodySet bodies = limb::bodies_of(elbow(), "elbow_flexion", {});
   const std::vector<double> moment = signal(m, "curl", "elbow_flexion_moment").samples;
   for (std::size_t i = 200; i + 200 < q.size(); ++i) {
     const double acceleration = (v[i + 1] - v[i - 1]) * 100.0;
-    ASSERT_NEAR(moment[i], bodies.first_moment_kg_m() * g * std::sin(q[i]) + bodies.inertia_kg_m2() * acceleration, 2e-3) << i;
+    ASSERT_NEAR(moment[i],
+                bodies.first_moment_kg_m() * g * std::sin(q[i]) + bodies.inertia_kg_m2() * acceleration, 2e-3)
+        << i;
   }
 }
 
 // ---------------------------------------------------------------- dynamometer
 
 TEST(DynamometerStage, WithTheLimbsMassesGivesTheTwinsMoment) {
-  const StageData m = run("limb.dynamometer", "gravity = \"limb\"\nlowpass_hz = 20", {{"signals", {&recordings()}}}, {"ramp", "random-1", "curl"});
-  EXPECT_LT(largest_difference(signal(m, "ramp", "elbow_flexion_moment").samples, signal(recordings(), "ramp", "joint_moment").samples), 1e-9);
+  const StageData m = run("limb.dynamometer", "gravity = \"limb\"\nlowpass_hz = 20",
+                          {{"signals", {&recordings()}}}, {"ramp", "random-1", "curl"});
+  EXPECT_LT(largest_difference(signal(m, "ramp", "elbow_flexion_moment").samples,
+                               signal(recordings(), "ramp", "joint_moment").samples),
+            1e-9);
   for (const char* trial : {"random-1", "curl"}) {
-    const std::vector<double> a = signal(m, trial, "elbow_flexion_moment").samples, b = signal(recordings(), trial, "joint_moment").samples;
-    for (std::size_t i = 200; i + 200 < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 2e-3) << trial << " " << i;  // the acceleration is filtered
+    const std::vector<double> a = signal(m, trial, "elbow_flexion_moment").samples,
+                              b = signal(recordings(), trial, "joint_moment").samples;
+    for (std::size_t i = 200; i + 200 < a.size(); ++i)
+      ASSERT_NEAR(a[i], b[i], 2e-3) << trial << " " << i;  // the acceleration is filtered
   }
 }
 
@@ -154,8 +180,10 @@ data::Scene without_passive_force() {
 
 TEST(DynamometerStage, APassiveSweepGivesTheWeightAndTheTwinsMomentWhereNothingElseIsPassive) {
   const data::Scene scene = without_passive_force();
-  const StageData session = run("twin.session", protocol + "raw_emg = false\ncurves = \"millard_2012\"\n", {}, {"*"}, scene);
-  const StageData m = run("limb.dynamometer", "gravity = \"passive_sweep\"\nlowpass_hz = 20", {{"signals", {&session}}}, {"ramp", "random-1"}, scene);
+  const StageData session =
+      run("twin.session", protocol + "raw_emg = false\ncurves = \"millard_2012\"\n", {}, {"*"}, scene);
+  const StageData m = run("limb.dynamometer", "gravity = \"passive_sweep\"\nlowpass_hz = 20",
+                          {{"signals", {&session}}}, {"ramp", "random-1"}, scene);
   const data::Table& table = m.tables.at("gravity");
   EXPECT_EQ(table.texts("trial")[0], "sweep");
   for (double moment : signal(session, "sweep", "joint_moment").samples) ASSERT_NEAR(moment, 0.0, 1e-9);
@@ -164,7 +192,8 @@ TEST(DynamometerStage, APassiveSweepGivesTheWeightAndTheTwinsMomentWhereNothingE
   EXPECT_NEAR(table.numbers("sin_N_m")[0], -first_moment(scene, 0.0) * g, 0.05);
   EXPECT_NEAR(table.numbers("cos_N_m")[0], 0.0, 0.05);
   for (const char* trial : {"ramp", "random-1"}) {
-    const std::vector<double> a = signal(m, trial, "elbow_flexion_moment").samples, b = signal(session, trial, "joint_moment").samples;
+    const std::vector<double> a = signal(m, trial, "elbow_flexion_moment").samples,
+                              b = signal(session, trial, "joint_moment").samples;
     for (std::size_t i = 200; i + 200 < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 0.05) << trial << " " << i;
   }
 }
@@ -182,26 +211,37 @@ TEST(DynamometerStage, UndoesSignsAndZerosOfTheMachine) {
       }
   });
   const StageData a = run("limb.dynamometer", "", {{"signals", {&recordings()}}}, {"curl"});
-  const StageData b = run("limb.dynamometer", "angle_sign = -1\ntorque_sign = -1\nangle_zero_deg = 30\ntorque_zero_N_m = 1.5", {{"signals", {&other}}}, {"curl"});
-  EXPECT_LT(largest_difference(signal(a, "curl", "elbow_flexion_moment").samples, signal(b, "curl", "elbow_flexion_moment").samples), 1e-9);
+  const StageData b =
+      run("limb.dynamometer", "angle_sign = -1\ntorque_sign = -1\nangle_zero_deg = 30\ntorque_zero_N_m = 1.5",
+          {{"signals", {&other}}}, {"curl"});
+  EXPECT_LT(largest_difference(signal(a, "curl", "elbow_flexion_moment").samples,
+                               signal(b, "curl", "elbow_flexion_moment").samples),
+            1e-9);
 }
 
 TEST(DynamometerStage, MarksHoldsAndSaysWhereThereAreNone) {
-  const std::string hold = "seed = 1\nraw_emg = false\ndynamometer = true\ntrial = [ { name = \"hold\", programme = \"isometric_hold\", duration_s = 12.0, lower_deg = 75.0, upper_deg = 75.0, effort = 0.6 } ]";
+  const std::string hold =
+      "seed = 1\nraw_emg = false\ndynamometer = true\ntrial = [ { name = \"hold\", programme = "
+      "\"isometric_hold\", duration_s = 12.0, lower_deg = 75.0, upper_deg = 75.0, effort = 0.6 } ]";
   const StageData session = run("twin.session", hold + "\ncocontraction = 0\nindependence = 0");
   const StageData m = run("limb.dynamometer", "windows = \"holds\"", {{"signals", {&session}}});
   const double share = m.tables.at("moment").numbers("share_used")[0];
   EXPECT_GT(share, 0.2);
   EXPECT_LT(share, 0.95);
-  const StageData none = run("limb.dynamometer", "windows = \"isokinetic\"\nspeed_deg_s = 60", {{"signals", {&session}}});
+  const StageData none =
+      run("limb.dynamometer", "windows = \"isokinetic\"\nspeed_deg_s = 60", {{"signals", {&session}}});
   ASSERT_EQ(none.diagnostics.size(), 1u);
   EXPECT_EQ(none.diagnostics[0].message, "no isokinetic phase was found in trial `hold`: none of it is used");
 }
 
 TEST(DynamometerStage, ASweepMustBeThere) {
-  const StageData session = run("twin.session", "raw_emg = false\ndynamometer = true\ntrial = [ { name = \"a\", duration_s = 4.0 } ]");
-  EXPECT_EQ(error_of([&] { run("limb.dynamometer", "gravity = \"passive_sweep\"", {{"signals", {&session}}}); }),
-            "error[missing-trial]: stage `limb.dynamometer` corrects gravity by a passive sweep and needs one trial of kind `passive`, not 0\n"
+  const StageData session = run(
+      "twin.session", "raw_emg = false\ndynamometer = true\ntrial = [ { name = \"a\", duration_s = 4.0 } ]");
+  EXPECT_EQ(error_of([&] {
+              run("limb.dynamometer", "gravity = \"passive_sweep\"", {{"signals", {&session}}});
+            }),
+            "error[missing-trial]: stage `limb.dynamometer` corrects gravity by a passive sweep and needs "
+            "one trial of kind `passive`, not 0\n"
             "  help: name it in `sweep_trials`, or choose `gravity = \"limb\"`\n");
 }
 

@@ -8,9 +8,15 @@
 
 namespace brachium::tests {
 
-inline std::filesystem::path sessions_dir() { return BRACHIUM_SESSIONS_DIR; }
-inline std::filesystem::path reference_dir() { return BRACHIUM_REFERENCE_DIR; }
-inline std::filesystem::path source_dir() { return BRACHIUM_SOURCE_DIR; }
+inline std::filesystem::path sessions_dir() {
+  return BRACHIUM_SESSIONS_DIR;
+}
+inline std::filesystem::path reference_dir() {
+  return BRACHIUM_REFERENCE_DIR;
+}
+inline std::filesystem::path source_dir() {
+  return BRACHIUM_SOURCE_DIR;
+}
 
 /// A folder of its own for one test, empty at the start.
 inline std::filesystem::path scratch_dir() {
@@ -28,11 +34,12 @@ inline std::filesystem::path scratch_dir() {
 }  // namespace brachium::tests
 
 /// Skips the test, with the reason, unless the recordings are at hand.
-#define BRACHIUM_NEEDS_SESSIONS()                                                                       \
+#define BRACHIUM_NEEDS_SESSIONS()                                                                           \
   if (brachium::tests::sessions_dir().empty() || !std::filesystem::exists(brachium::tests::sessions_dir())) \
   GTEST_SKIP() << "needs the public recordings: configure with -DBRACHIUM_SESSIONS_DIR=<folder>"
 
 /// Skips the test, with the reason, unless the reference numbers are at hand.
-#define BRACHIUM_NEEDS_REFERENCE()                                                                        \
-  if (brachium::tests::reference_dir().empty() || !std::filesystem::exists(brachium::tests::reference_dir())) \
+#define BRACHIUM_NEEDS_REFERENCE()                                \
+  if (brachium::tests::reference_dir().empty() ||                 \
+      !std::filesystem::exists(brachium::tests::reference_dir())) \
   GTEST_SKIP() << "needs the reference numbers: configure with -DBRACHIUM_REFERENCE_DIR=<folder>"

@@ -20,11 +20,15 @@ using namespace brachium;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-std::filesystem::path scene_path(const std::string& name) { return tests::source_dir() / "pipelines" / "scenes" / name; }
+std::filesystem::path scene_path(const std::string& name) {
+  return tests::source_dir() / "pipelines" / "scenes" / name;
+}
 
 struct Elbow {
   data::Scene scene;
-  limb::MusclePath path(const data::SceneMuscle& m) const { return {m.name, m.path, scene.coordinates.at(0)}; }
+  limb::MusclePath path(const data::SceneMuscle& m) const {
+    return {m.name, m.path, scene.coordinates.at(0)};
+  }
   limb::MusclePath path(const std::string& name) const { return path(scene.muscle(name)); }
 };
 
@@ -32,8 +36,9 @@ class ShippedElbow : public testing::TestWithParam<const char*> {
  protected:
   const Elbow elbow{io::read_scene(scene_path(GetParam()))};
 };
-INSTANTIATE_TEST_SUITE_P(, ShippedElbow, testing::Values("elbow.toml", "elbow_twin.toml"),
-                         [](const auto& p) { return std::string(p.param) == "elbow.toml" ? "Curls" : "Twin"; });
+INSTANTIATE_TEST_SUITE_P(, ShippedElbow, testing::Values("elbow.toml", "elbow_twin.toml"), [](const auto& p) {
+  return std::string(p.param) == "elbow.toml" ? "Curls" : "Twin";
+});
 
 TEST_P(ShippedElbow, ExtendsByTheTricepsAndFlexesByTheOthersOverItsWholeRange) {
   for (const auto& m : elbow.scene.muscles) {

@@ -39,7 +39,8 @@ TEST(NearestName, FindsMisspellingsButNotStrangers) {
 
 TEST(Render, UnderlinesTheOffendingText) {
   const Diagnostic d{Severity::error, "unknown-key", "`low_pas_hz` is not an option of stage `emg.envelope`",
-                     SourceSpan{"pipelines/isometric.toml", 14, 1, 10, "low_pas_hz = 6.0"}, "did you mean `lowpass_hz`?"};
+                     SourceSpan{"pipelines/isometric.toml", 14, 1, 10, "low_pas_hz = 6.0"},
+                     "did you mean `lowpass_hz`?"};
   EXPECT_EQ(render(d),
             "error[unknown-key]: `low_pas_hz` is not an option of stage `emg.envelope`\n"
             "  --> pipelines/isometric.toml:14:1\n"
@@ -50,7 +51,8 @@ TEST(Render, UnderlinesTheOffendingText) {
 
 TEST(MatchNames, GlobsAndReportsEveryPatternWithoutMatch) {
   const std::vector<std::string> names{"mvc-1", "mvc-2", "iso-1"};
-  EXPECT_EQ(match_names(std::vector<std::string>{"mvc-*"}, names, "trial"), (std::vector<std::string>{"mvc-1", "mvc-2"}));
+  EXPECT_EQ(match_names(std::vector<std::string>{"mvc-*"}, names, "trial"),
+            (std::vector<std::string>{"mvc-1", "mvc-2"}));
   try {
     match_names(std::vector<std::string>{"mcv-*", "iso-?", "dyn-*"}, names, "trial");
     FAIL();
@@ -102,7 +104,11 @@ TEST(PiecewiseCubic, SlopeIsTheDerivativeOfTheValue) {
 
 TEST(MemorySession, RoundTripsThroughSourceAndSink) {
   Session s{"s01", {{"body_mass_kg", 75.0}}, {}, {}};
-  s.trials.push_back({"iso-1", TrialKind::calibration, {}, {}, {Signal{{"bic", Quantity::emg, "V", 1000.0, 0.5, 3, "BIC", "", {}}, {1, 2, 3}}}});
+  s.trials.push_back({"iso-1",
+                      TrialKind::calibration,
+                      {},
+                      {},
+                      {Signal{{"bic", Quantity::emg, "V", 1000.0, 0.5, 3, "BIC", "", {}}, {1, 2, 3}}}});
   const MemorySession source{s};
   MemorySession copy;
   store(load(source), copy);
@@ -138,7 +144,9 @@ TEST(Toml, EveryMistakeOfATableIsReportedWithItsPlace) {
 }
 
 TEST(Toml, WritesWhatItReads) {
-  const std::string text = "a = 1\nb = 0.1\nc = \"x\\ny\"\nd = [1.0, 2.5]\n\n[t]\ne = true\n\n[[s]]\nf = 1e-300\n\n[[s]]\ng = { h = 2 }\n";
+  const std::string text =
+      "a = 1\nb = 0.1\nc = \"x\\ny\"\nd = [1.0, 2.5]\n\n[t]\ne = true\n\n[[s]]\nf = 1e-300\n\n[[s]]\ng = { h "
+      "= 2 }\n";
   const TomlNode once = parse_toml(text, "a");
   const std::string written = write_toml(once);
   EXPECT_EQ(write_toml(parse_toml(written, "b")), written);
