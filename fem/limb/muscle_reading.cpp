@@ -63,7 +63,9 @@ double moment_by_stress(const MuscleReading& m, const Configuration& now) {
                                                      static_cast<double>(m.body.belly_cells);
   const Eigen::Vector3d plane = origin.centre_m + middle * along;
   Eigen::Vector3d moment =
-      section_stress_wrench(m.problem, m.discretisation, now, plane, along, m.hinge.centre_m).moment_n_m;
+      section_stress_wrench(m.problem, m.discretisation, now, plane, along, m.hinge.centre_m,
+                            m.body.shape ? SectionFaces::parting : SectionFaces::in_plane)
+          .moment_n_m;
   if (m.problem.contacts.empty()) return m.hinge.axis.dot(moment);
   // Off the faces between cells, where a plane would cut along edges.
   const SectionFigures cut = section(

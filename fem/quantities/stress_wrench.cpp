@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <set>
 #include "data/model/error.hpp"
 #include "fem/element/shape.hpp"
 #include "fem/quantities/cell_state.hpp"
@@ -72,17 +73,32 @@ Wrench stress_wrench(const Problem& problem, const Discretisation& discretisatio
 
 Wrench section_stress_wrench(const Problem& problem, const Discretisation& discretisation,
                              const Configuration& configuration, const Eigen::Vector3d& plane_point_m,
-                             const Eigen::Vector3d& normal, const Eigen::Vector3d& point_m) {
+                             const Eigen::Vector3d& normal, const Eigen::Vector3d& point_m,
+                             SectionFaces which) {
   const data::Mesh& mesh = discretisation.mesh();
   const CellStates states(problem, discretisation, configuration);
   const Eigen::Vector3d n = normal.normalized();
+  std::set<data::CellFace> parting;
+  if (which == SectionFaces::parting) {
+    const data::FaceTable table(mesh);
+    const auto& entries = table.entries();
+    for (std::size_t i = 1; i < entries.size(); ++i) {
+      const data::CellFace &a = entries[i - 1].face, &b = entries[i].face;
+      if (entries[i - 1].key != entries[i].key ||
+          (side_of(mesh, a.cell, plane_point_m, n) < 0.0) == (side_of(mesh, b.cell, plane_point_m, n) < 0.0))
+        continue;
+      parting.insert(a);
+      parting.insert(b);
+    }
+  }
   const int faces = data::faces_per_cell(mesh.type);
   Wrench before, after;
   bool found = false;
   for (int cell = 0; cell < discretisation.cell_count(); ++cell) {
     for (int f = 0; f < faces; ++f) {
       const data::CellFace face{cell, f};
-      if (!lies_in(mesh, face, plane_point_m, n)) continue;
+      if (which == SectionFaces::parting ? !parting.contains(face) : !lies_in(mesh, face, plane_point_m, n))
+        continue;
       found = true;
       const bool is_before = side_of(mesh, cell, plane_point_m, n) < 0.0;
       add_face(mesh, states, face, is_before ? 0.5 : -0.5, point_m, is_before ? before : after);
