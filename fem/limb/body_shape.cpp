@@ -9,6 +9,7 @@
 
 #include "fem/assembly/discretisation.hpp"
 #include "fem/limb/muscle_body.hpp"
+#include "fem/quantities/wrench.hpp"
 
 namespace brachium::fem {
 namespace {
@@ -18,8 +19,7 @@ constexpr double beside_path_norm = 0.05;  // of the muscle's length
 
 /// Radii at even places along z of circles with the body's cross-sections: volume by hats over the hats'
 /// lengths.
-std::vector<double> profile_of(const data::Mesh& mesh, Formulation formulation, double from_m, double to_m) {
-  const Discretisation d(std::make_shared<const data::Mesh>(mesh), formulation);
+std::vector<double> profile_of(const Discretisation& d, double from_m, double to_m) {
   std::vector<double> volume(stations, 0.0);
   Eigen::MatrixX3d gradient;
   for (int c = 0; c < d.cell_count(); ++c) {
@@ -49,31 +49,33 @@ double reach_of(const data::Mesh& mesh, const Eigen::Vector3d& end) {
   return reach;
 }
 
-void check_ends(const MuscleBody& body, const data::Mesh& mesh) {
-  for (const char* name : {"origin", "insertion", "side"}) mesh.surface(name);
-  if (mesh.type != cell_type(body.formulation))
-    throw data::InputError(
-        "limb-geometry",
-        fmt::format("{}: the mesh has {} cells, {} takes {}", body.name, data::to_string(mesh.type),
-                    to_string(body.formulation), data::to_string(cell_type(body.formulation))),
-        "elevate the mesh");
+struct Ends {
+  Eigen::Vector3d origin_m, insertion_m;  ///< centroids
+};
+
+Ends ends_of(const data::Mesh& mesh, Formulation formulation) {
+  for (const char* name : {"origin", "insertion", "side"}) mesh.surface(name);  // throws where there is none
+  const Discretisation d(std::make_shared<const data::Mesh>(mesh), formulation);
+  Configuration at_rest;
+  at_rest.dofs = Eigen::VectorXd::Zero(d.dof_count());
+  return {barycentre(d, at_rest, "origin"), barycentre(d, at_rest, "insertion")};
 }
 
 /// Shape and the figures of the body that follow from it.
 MuscleBody given(MuscleBody body, BodyShape shape, data::Mesh mesh, double length_m) {
   for (const std::string& region : shape.tendons) mesh.region(region);  // throws where there is none
+  shape.mesh = std::make_shared<const data::Mesh>(std::move(mesh));
   shape.length_m = body.belly_length_m = length_m;
   body.tendon_origin_m = body.tendon_insertion_m = body.transition_m = 0.0;
   body.aponeurosis = {};
   body.flatness = 1.0;
-  body.profile_m = profile_of(mesh, body.formulation, 0.0, shape.insertion_m.z());
+  body.profile_m = profile_of({shape.mesh, body.formulation}, 0.0, shape.insertion_m.z());
   shape.greatest_radius_m = *std::max_element(body.profile_m.begin(), body.profile_m.end());
-  shape.reach_m = reach_of(mesh, shape.insertion_m);
+  shape.reach_m = reach_of(*shape.mesh, shape.insertion_m);
   // About as many cross-sections as the mesh has layers of cells.
   const double cell_m = std::cbrt(std::numbers::pi * shape.greatest_radius_m * shape.greatest_radius_m *
-                                  length_m / mesh.cell_count());
+                                  length_m / shape.mesh->cell_count());
   body.belly_cells = std::clamp(static_cast<int>(std::lround(length_m / cell_m)), 2, 40);
-  shape.mesh = std::make_shared<const data::Mesh>(std::move(mesh));
   body.shape = std::make_shared<const BodyShape>(std::move(shape));
   return body;
 }
@@ -107,28 +109,8 @@ void move(data::Mesh& mesh, const Eigen::Matrix3d& A, const Eigen::Vector3d& b) 
   }
 }
 
-Eigen::Vector3d surface_centroid_m(const data::Mesh& mesh, const std::string& surface) {
-  const int corners = data::faces_per_cell(mesh.type) == 4 ? 3 : 4;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double area = 0.0;
-  for (const data::CellFace& f : mesh.surface(surface).faces) {
-    const auto local = data::face_nodes(mesh.type, f.face);
-    const auto at = [&](int i) -> Eigen::Vector3d {
-      return mesh.points.col(mesh.cells(local[static_cast<std::size_t>(i)], f.cell));
-    };
-    for (int i = 1; i + 1 < corners; ++i) {
-      const double a = 0.5 * (at(i) - at(0)).cross(at(i + 1) - at(0)).norm();
-      sum += a * (at(0) + at(i) + at(i + 1)) / 3.0;
-      area += a;
-    }
-  }
-  return sum / area;
-}
-
 MuscleBody with_stress_free_shape(MuscleBody body, data::Mesh mesh, std::vector<std::string> tendons) {
-  check_ends(body, mesh);
-  const Eigen::Vector3d origin = surface_centroid_m(mesh, "origin"),
-                        end = surface_centroid_m(mesh, "insertion");
+  const auto [origin, end] = ends_of(mesh, body.formulation);
   const Eigen::Vector3d line = end - origin;
   if (!(line.norm() > 0.0))
     throw data::InputError("limb-geometry",
@@ -144,9 +126,7 @@ MuscleBody with_stress_free_shape(MuscleBody body, data::Mesh mesh, std::vector<
 }
 
 MuscleBody with_in_situ_guess(MuscleBody body, const data::Mesh& in_situ, std::vector<std::string> tendons) {
-  check_ends(body, in_situ);
-  const Eigen::Vector3d origin = surface_centroid_m(in_situ, "origin"),
-                        end = surface_centroid_m(in_situ, "insertion");
+  const auto [origin, end] = ends_of(in_situ, body.formulation);
   body.cable.origin_m = origin.head<2>();
   const CablePath path(body.cable, body.reference_rad);
   const double from_insertion = nearest_on_path(path, end.head<2>()),
@@ -179,14 +159,13 @@ MuscleBody with_in_situ_guess(MuscleBody body, const data::Mesh& in_situ, std::v
   for (const int p : in_situ.surface_points("origin")) mesh.points.col(p) = in_situ.points.col(p);
   for (const int p : in_situ.surface_points("insertion"))
     mesh.points.col(p) = in_situ.points.col(p) + (1.0 / s - 1.0) * chord;
-  shape.insertion_m = chord / s;
   // `stress_free_axis` of the finished body turns back by the same frame.
   body.belly_length_m = along_path / s;
   body.tendon_origin_m = body.tendon_insertion_m = 0.0;
   body.shape = nullptr;
   const StressFreeAxis axis = stress_free_axis(body);
   move(mesh, axis.frame.transpose(), -axis.frame.transpose() * origin);
-  shape.insertion_m = axis.frame.transpose() * shape.insertion_m;
+  shape.insertion_m = axis.frame.transpose() * chord / s;
   return given(std::move(body), std::move(shape), std::move(mesh), along_path / s);
 }
 

@@ -35,11 +35,8 @@ struct BodyShape {
 /// points -> A x + b; of the field `fibre` the directions.
 void move(data::Mesh& mesh, const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
 
-/// Centroid of a surface, its faces as the polygons of their corners.
-Eigen::Vector3d surface_centroid_m(const data::Mesh& mesh, const std::string& surface);
-
 /// The body with a stress-free mesh: its belly's length and profile are then the mesh's; path, pre-stretch and
-/// material stay. Throws InputError("missing-surface"), ("missing-region"), ("limb-geometry").
+/// material stay. Throws InputError("missing-surface"), ("missing-region"), ("limb-geometry"), and as Discretisation does.
 MuscleBody with_stress_free_shape(MuscleBody body, data::Mesh mesh, std::vector<std::string> tendons = {});
 
 /// The body with a first guess of the stress-free shape of a mesh in situ: shrunk along the line between its

@@ -18,11 +18,7 @@ MuscleBody find_stress_free(const MuscleBody& body, const data::Mesh& in_situ,
   const auto make = [&](std::shared_ptr<const data::Mesh> mesh) {
     Problem problem = build(guess, range, std::move(mesh)).problem;
     problem.contacts = pattern.contacts;
-    Phase phase;
-    phase.name = "in situ";
-    phase.amplitude = {{"origin", 1.0}, {"insertion", 1.0}};
-    phase.steps = 4;
-    problem.programme = {phase};
+    problem.programme = {in_situ_phase(4)};
     return problem;
   };
   StressFreeShape found = stress_free_shape(in_situ.points, *pattern.mesh, make, inverse);

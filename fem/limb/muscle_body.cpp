@@ -155,6 +155,14 @@ MuscleBody with_tendons(MuscleBody body, double origin_m, double insertion_m) {
   return body;
 }
 
+Phase in_situ_phase(int steps) {
+  Phase phase;
+  phase.name = "in situ";
+  phase.amplitude = {{"origin", 1.0}, {"insertion", 1.0}};
+  phase.steps = steps;
+  return phase;
+}
+
 double amplitude(const MuscleBody& body, double q) {
   return 1.0 + std::abs(q - body.reference_rad);
 }

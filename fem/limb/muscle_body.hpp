@@ -101,6 +101,9 @@ BuiltMuscle build(const MuscleBody& body, const AngleRange& range);
 BuiltMuscle build(const MuscleBody& body, const AngleRange& range,
                   std::shared_ptr<const data::Mesh> stress_free);
 
+/// Both ends from the stress-free place to the in-situ place at the reference angle, passive.
+Phase in_situ_phase(int steps);
+
 /// Amplitude of both conditions at an angle.
 double amplitude(const MuscleBody& body, double q_rad);
 

@@ -56,9 +56,7 @@ MuscleStates::MuscleStates(MuscleBody body, AngleRange range, Hinge hinge, std::
 MuscleStates::Known MuscleStates::in_situ(const MuscleStates* like) {
   Known reference;
   reference.state.q_rad = reference.state.from_q_rad = body_.reference_rad;
-  Phase phase;
-  phase.name = "in situ";
-  phase.amplitude = {{"origin", 1.0}, {"insertion", 1.0}};
+  Phase phase = in_situ_phase(1);
   for (const bool theirs : {true, false}) {
     if (theirs && !like) continue;
     const SolveState from = theirs ? adapted(*like, like->known_.front(), phase) : stretched(phase);

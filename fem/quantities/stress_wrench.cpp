@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-
 #include <set>
+
 #include "data/model/error.hpp"
 #include "fem/element/shape.hpp"
 #include "fem/quantities/cell_state.hpp"

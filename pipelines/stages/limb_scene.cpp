@@ -173,7 +173,6 @@ void read_belly(TomlTable& table, fem::MuscleBody& body) {
 
 /// Tendons are meshed in the muscle-tendon complex only; the rigid tendon is what the path leaves.
 void read_tendons(TomlTable& table, LimbVariant variant, fem::MuscleBody& body) {
-  body.pre_stretch = table.require_number("pre_stretch");
   auto tendons = table.table("tendons");
   if (!tendons) {
     if (!table.has("tendons") && variant == LimbVariant::mtc)
@@ -228,6 +227,7 @@ void read_muscle(TomlTable& table, const fem::LimbMesh& mesh, std::vector<std::s
     table.error("unknown-value", fmt::format("muscle `{}` cannot be a `{}`", body.name, action), "action",
                 data::suggest(action, actions));
   muscle.flexor = action != "extensor";
+  body.pre_stretch = table.require_number("pre_stretch");
   read_path(table, body.cable, !table.has("mesh"));
   if (table.has("mesh")) {
     for (const char* key : {"belly", "tendons"}) {
@@ -236,7 +236,6 @@ void read_muscle(TomlTable& table, const fem::LimbMesh& mesh, std::vector<std::s
                     "a mesh shows both; its tendons are regions named in `mesh.tendons`");
       table.know(key);
     }
-    body.pre_stretch = table.require_number("pre_stretch");
   } else {
     read_belly(table, body);
     read_tendons(table, draft.scene.variant, body);

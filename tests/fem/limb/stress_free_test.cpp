@@ -25,11 +25,7 @@ struct Case {
     contact.penalty_pa_per_m = 1e8;
     contact.smoothing_m = 2e-4;
     problem.contacts = {contact};
-    Phase phase;
-    phase.name = "in situ";
-    phase.amplitude = {{"origin", 1.0}, {"insertion", 1.0}};
-    phase.steps = 4;
-    problem.programme = {phase};
+    problem.programme = {in_situ_phase(4)};
     return problem;
   }
   auto maker() const {
