@@ -27,7 +27,7 @@ bool row_matches(const data::Table& table, std::size_t row, const std::map<std::
   return true;
 }
 
-double find_number(const Expectation& e, const StageData& output) {
+std::vector<double> find_numbers(const Expectation& e, const StageData& output) {
   const auto found = output.tables.find(e.table);
   if (found == output.tables.end()) {
     std::vector<std::string> known;
@@ -37,15 +37,23 @@ double find_number(const Expectation& e, const StageData& output) {
   }
   const data::Table& table = found->second;
   const std::vector<double>& numbers = table.numbers(e.column);
-  std::vector<std::size_t> rows;
+  std::vector<double> selected;
   for (std::size_t r = 0; r < table.rows(); ++r) {
-    if ((!e.row || *e.row == r) && row_matches(table, r, e.where)) rows.push_back(r);
+    if ((!e.row || *e.row == r) && row_matches(table, r, e.where)) selected.push_back(numbers[r]);
   }
-  if (rows.size() != 1) {
-    throw data::InputError("ambiguous-row",
-                           fmt::format("{} rows of `{}` are selected instead of one", rows.size(), e.table));
+  if (e.every && selected.empty())
+    throw data::InputError("ambiguous-row", fmt::format("no row of `{}` is selected", e.table));
+  if (!e.every && selected.size() != 1) {
+    throw data::InputError(
+        "ambiguous-row", fmt::format("{} rows of `{}` are selected instead of one", selected.size(), e.table),
+        "add to `where`, or ask of all of them: every = true");
   }
-  return numbers[rows.front()];
+  return selected;
+}
+
+bool is_met(const Expectation& e, double found) {
+  return std::isfinite(found) && (!e.value || std::abs(found - *e.value) <= e.tolerance) &&
+         (!e.minimum || found >= *e.minimum) && (!e.maximum || found <= *e.maximum);
 }
 
 std::string number_text(double value) {
@@ -82,6 +90,7 @@ std::vector<Expectation> parse_expectations(io::TomlTable& root, std::vector<dat
       if (*row < 0) entry.error("out-of-range", "`row` counts from 0", "row");
       e.row = static_cast<std::size_t>(std::max<std::int64_t>(*row, 0));
     }
+    e.every = entry.boolean("every").value_or(false);
     e.value = entry.number("value");
     const auto tolerance = entry.number("tolerance");
     e.minimum = entry.number("min");
@@ -109,10 +118,10 @@ ExpectationResult check_expectation(const Expectation& e, const StageData* outpu
   }
   result.checked = true;
   try {
-    const double found = find_number(e, *output);
-    result.found = found;
-    result.passed = std::isfinite(found) && (!e.value || std::abs(found - *e.value) <= e.tolerance) &&
-                    (!e.minimum || found >= *e.minimum) && (!e.maximum || found <= *e.maximum);
+    const std::vector<double> found = find_numbers(e, *output);
+    const auto failed = std::ranges::find_if_not(found, [&](double number) { return is_met(e, number); });
+    result.passed = failed == found.end();
+    result.found = result.passed ? found.front() : *failed;
   } catch (const data::InputError& error) {
     result.remark = error.what();
   }
@@ -132,6 +141,7 @@ std::string place_text(const Expectation& e) {
   std::string rows;
   for (const auto& [column, wanted] : e.where) rows += (rows.empty() ? "" : ",") + column + "=" + wanted;
   if (e.row) rows += (rows.empty() ? "" : ",") + fmt::format("row {}", *e.row);
+  if (e.every) rows += (rows.empty() ? "every row" : ", every row");
   return fmt::format("{}/{}{}.{}", e.stage, e.table, rows.empty() ? "" : "[" + rows + "]", e.column);
 }
 

@@ -13,12 +13,13 @@
 
 namespace brachium::pipelines {
 
-/// One number: `column` of the one row of `table` that `where` selects (or of row `row`).
+/// `column` of the one row of `table` that `where` selects (or of row `row`); with `every` of all rows that it selects.
 struct Expectation {
   std::string name;
   std::string stage, table, column;
   std::map<std::string, std::string> where;  ///< column -> value as text; every entry must hold
   std::optional<std::size_t> row;            ///< from 0
+  bool every = false;                        ///< all selected rows, at least one
   std::optional<double> value;
   double tolerance = 0.0;  ///< absolute
   std::optional<double> minimum, maximum;
@@ -29,8 +30,8 @@ struct ExpectationResult {
   const Expectation* expectation = nullptr;
   bool checked = false;  ///< false: its stage was not part of this run
   bool passed = false;
-  std::optional<double> found;
-  std::string remark;  ///< why there is no number
+  std::optional<double> found;  ///< of every row: the first that fails, else the first
+  std::string remark;           ///< why there is no number
 };
 
 std::vector<Expectation> parse_expectations(io::TomlTable& root, std::vector<data::Diagnostic>& diagnostics);

@@ -210,6 +210,28 @@ TEST_F(RunnerTest, ExpectedNumbersFailTheRun) {
   EXPECT_EQ(study_.run({"expect.1.min=-1000"}).outcome, Outcome::done);
 }
 
+TEST(Expectation, AsksOneRowOrEveryRowOfATable) {
+  StageData output;
+  output.tables["folds"] = data::Table{"Folds",
+                                       {{"parameter", "", std::vector<std::string>{"gain", "gain", "delay"}},
+                                        {"at_bound", "1", std::vector<double>{0.0, 1.0, 3.0}}}};
+  Expectation e;
+  e.stage = "validation";
+  e.table = "folds";
+  e.column = "at_bound";
+  e.where = {{"parameter", "gain"}};
+  e.maximum = 2.0;
+  EXPECT_EQ(check_expectation(e, &output).remark, "2 rows of `folds` are selected instead of one");
+  e.every = true;
+  EXPECT_TRUE(check_expectation(e, &output).passed);
+  EXPECT_EQ(place_text(e), "validation/folds[parameter=gain, every row].at_bound");
+  e.where.clear();
+  EXPECT_FALSE(check_expectation(e, &output).passed);
+  EXPECT_EQ(check_expectation(e, &output).found, 3.0);
+  e.where = {{"parameter", "shape"}};
+  EXPECT_EQ(check_expectation(e, &output).remark, "no row of `folds` is selected");
+}
+
 /// A description of two trials recorded as CSV.
 class ImportTest : public ::testing::Test {
  protected:
