@@ -2,7 +2,8 @@
 ///
 ///   session_memory_bench FOLDER [MINUTES = 60] [CHANNELS = 16] [RATE_HZ = 2000]
 ///
-/// Writes FOLDER/long.csv first (about 1.1 GB for an hour) and leaves it there for the next run.
+/// Writes FOLDER/long.csv first (about 1.1 GB for an hour) and leaves it there for the next run. Fails when the peak
+/// exceeds 300 MB.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -92,5 +93,5 @@ int main(int argc, char** argv) {
   for (std::size_t s = 0; s < session.info().trials[0].signals.size(); ++s)
     largest = std::max(largest, session.signal(0, s).samples.back());
   std::printf("read by signals: %.1f s, peak memory %.0f MB\n", seconds() - begin, peak_megabytes());
-  return 0;
+  return peak_megabytes() < 300.0 ? 0 : 1;
 }

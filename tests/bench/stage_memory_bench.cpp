@@ -1,10 +1,11 @@
-/// Peak memory of the EMG stages on a long recording, through the command line.
+/// Peak memory of the stages from raw EMG to the elbow's moment on a long recording, through the command line.
 ///
-///   stage_memory_bench BRACHIUM FOLDER [MINUTES = 60] [CHANNELS = 16] [RATE_HZ = 2000]
+///   stage_memory_bench BRACHIUM SCENE FOLDER [MINUTES = 60] [CHANNELS = 16] [RATE_HZ = 2000]
 ///
-/// Writes FOLDER/long.h5 (noise that comes and goes; about 0.9 GB for an hour) unless it is there, runs
-/// quality, envelope and onset stages on it one by one, each a process of its own, then all of them with the
-/// report, and prints the peak memory of each. Fails when one exceeds 300 MB.
+/// SCENE is pipelines/scenes/elbow.toml, whose three electrodes are the first three channels. Writes FOLDER/long.h5
+/// (noise that comes and goes and a moving elbow; about 0.9 GB for an hour) unless it is there, runs the stages on it
+/// one by one, each a process of its own, then all of them with the report, and prints the peak memory of each.
+/// Fails when one exceeds 300 MB.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -28,6 +29,7 @@ using namespace brachium;
 namespace {
 
 constexpr double limit_megabytes = 300.0;
+constexpr const char* electrodes[] = {"biceps", "brachioradialis", "triceps_lateral"};
 
 void write_recording(const std::filesystem::path& file, double minutes, int channels, double rate_hz) {
   io::SessionFileWriter writer(file);
@@ -41,7 +43,7 @@ void write_recording(const std::filesystem::path& file, double minutes, int chan
   std::vector<double> piece(std::size_t{1} << 16);
   for (int c = 0; c < channels; ++c) {
     data::SignalInfo info;
-    info.name = fmt::format("emg{}", c + 1);
+    info.name = c < 3 ? electrodes[c] : fmt::format("emg{}", c + 1);
     info.quantity = data::Quantity::emg;
     info.unit = "V";
     info.rate_hz = rate_hz;
@@ -60,6 +62,17 @@ void write_recording(const std::filesystem::path& file, double minutes, int chan
       writer.write_samples("long", info.name, first, std::span(piece).first(n));
     }
   }
+  data::SignalInfo angle;
+  angle.name = angle.coordinate = "elbow_flexion";
+  angle.quantity = data::Quantity::joint_angle;
+  angle.unit = "rad";
+  angle.rate_hz = 100.0;
+  angle.count = static_cast<std::size_t>(minutes * 60.0 * angle.rate_hz);
+  std::vector<double> angles(angle.count);
+  for (std::size_t i = 0; i < angle.count; ++i)
+    angles[i] = 1.2 - 0.8 * std::cos(std::numbers::pi * static_cast<double>(i) / angle.rate_hz / 3.0);
+  writer.begin_signal("long", angle);
+  writer.write_samples("long", angle.name, 0, angles);
   writer.commit();
 }
 
@@ -90,21 +103,28 @@ Usage run(const std::vector<std::string>& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::puts("stage_memory_bench BRACHIUM FOLDER [MINUTES] [CHANNELS] [RATE_HZ]");
+  if (argc < 4) {
+    std::puts("stage_memory_bench BRACHIUM SCENE FOLDER [MINUTES] [CHANNELS] [RATE_HZ]");
     return 2;
   }
-  const std::filesystem::path folder = argv[2];
+  const std::filesystem::path folder = argv[3];
   if (!std::filesystem::exists(folder / "long.h5")) {
-    write_recording(folder / "long.h5", argc > 3 ? std::atof(argv[3]) : 60.0,
-                    argc > 4 ? std::atoi(argv[4]) : 16, argc > 5 ? std::atof(argv[5]) : 2000.0);
+    write_recording(folder / "long.h5", argc > 4 ? std::atof(argv[4]) : 60.0,
+                    argc > 5 ? std::atoi(argv[5]) : 16, argc > 6 ? std::atof(argv[6]) : 2000.0);
   }
   const std::filesystem::path definition = folder / "long_stages.toml", out = folder / "long_run";
   std::ofstream(definition)
-      << "[pipeline]\ntitle = \"A long recording\"\nsession = \"long.h5\"\n"
+      << "[pipeline]\ntitle = \"A long recording\"\nsession = \"long.h5\"\nscene = \""
+      << std::filesystem::absolute(argv[2]).string()
+      << "\"\n"
          "[[stage]]\nname = \"quality\"\nrun = \"emg.quality\"\non_bad = \"warn\"\n"
          "[[stage]]\nname = \"excitation\"\nrun = \"emg.envelope\"\nnormalise = \"trials_maximum\"\n"
-         "[[stage]]\nname = \"onset\"\nrun = \"emg.onset\"\n";
+         "[[stage]]\nname = \"onset\"\nrun = \"emg.onset\"\n"
+         "[[stage]]\nname = \"activation\"\nrun = \"emg.activation\"\ninput = { excitation = \"excitation\" "
+         "}\n"
+         "[[stage]]\nname = \"kinematics\"\nrun = \"limb.kinematics\"\n"
+         "[[stage]]\nname = \"moment\"\nrun = \"hill.moment\"\n"
+         "input = { activation = \"activation\", kinematics = \"kinematics\" }\n";
   std::filesystem::remove_all(out);
   bool good = true;
   const auto show = [&good](const std::string& what, const std::vector<std::string>& command) {
@@ -117,7 +137,7 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
   };
   const std::vector<std::string> base{argv[1], "run", definition.string(), "--out", out.string(), "--quiet"};
-  for (const std::string stage : {"quality", "excitation", "onset"}) {
+  for (const std::string stage : {"quality", "excitation", "onset", "activation", "kinematics", "moment"}) {
     std::vector<std::string> command = base;
     command.insert(command.end(), {"--only", stage});
     show("--only " + stage, command);
