@@ -157,6 +157,11 @@ std::size_t MuscleTrace::count(FrameStatus which) const {
   return static_cast<std::size_t>(std::count(status.begin(), status.end(), which));
 }
 
+bool frames_are_independent(const MuscleModelOptions& options, bool has_velocity) {
+  return options.tendon == TendonKind::rigid && options.compatibility != Compatibility::ceinms &&
+         (has_velocity || options.velocity == FibreVelocity::none);
+}
+
 void forward(const MuscleTendon& muscle, const PathTrace& path, std::span<const double> activation,
              MuscleScratch& scratch, MuscleTrace& out, std::span<const Tangent> tangents) {
   check(muscle, path, activation, tangents);

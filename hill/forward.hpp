@@ -97,6 +97,10 @@ class MuscleScratch {
   std::array<std::vector<double>, kSlots> arrays_;
 };
 
+/// Whether a frame's result depends on that frame alone, so that a trial may be run in pieces: a rigid tendon whose path
+/// comes with its velocity (or whose fibre velocity is not asked for).
+bool frames_are_independent(const MuscleModelOptions& options, bool has_velocity);
+
 /// Runs the chain over all frames. The tangents are those of the discrete chain itself, differences in time
 /// included. Throws InputError (sizes that disagree, "trial-too-short", "not-finite", "activation-range") and
 /// ConvergenceFailure naming muscle and frame.

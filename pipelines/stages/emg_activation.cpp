@@ -16,10 +16,16 @@
 namespace brachium::pipelines {
 namespace {
 
-struct MuscleActivation {
-  std::string name;
-  data::ActivationParameters parameters;
-};
+/// sum += weight * gain * samples, read in pieces: a long recording's channels never stand in memory together.
+void add_channel(const data::SessionSource& source, std::size_t trial, const ExcitationChannel& channel,
+                 double weight, std::vector<double>& sum) {
+  std::vector<double> piece(std::min<std::size_t>(sum.size(), std::size_t{1} << 16));
+  for (std::size_t first = 0; first < sum.size(); first += piece.size()) {
+    piece.resize(std::min(piece.size(), sum.size() - first));
+    source.read(trial, channel.signal, first, piece);
+    for (std::size_t k = 0; k < piece.size(); ++k) sum[first + k] += weight * (channel.gain * piece[k]);
+  }
+}
 
 void run(const StageContext& context, StageOutput& out) {
   const data::Scene& scene = context.need_scene();
@@ -41,9 +47,9 @@ void run(const StageContext& context, StageOutput& out) {
   data::parallel_for(context.trials.size(), context.threads, [&](std::size_t i) {
     const std::size_t t = trial_index(input, context.trials[i]);
     const data::TrialInfo& trial = input.signals->info().trials[t];
-    const std::vector<data::Signal> channels = excitation_channels(input, context.trials[i], subject);
+    const std::vector<ExcitationChannel> channels = excitation_channels(input, context.trials[i], subject);
     std::vector<std::string> names;
-    for (const data::Signal& c : channels) names.push_back(c.info.name);
+    for (const ExcitationChannel& c : channels) names.push_back(c.info.name);
     const limb::DriveMap drive = limb::drive_map(scene, names);
     undriven[i] = drive.undriven;
     const data::SignalInfo& grid = channels.front().info;
@@ -56,31 +62,29 @@ void run(const StageContext& context, StageOutput& out) {
       for (std::size_t c = 0; c < drive.channels.size(); ++c) {
         const double weight = drive.weights(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(c));
         if (weight == 0.0) continue;
-        const auto channel = std::find_if(channels.begin(), channels.end(), [&](const data::Signal& s) {
-          return s.info.name == drive.channels[c];
-        });
-        for (std::size_t k = 0; k < mixed.size(); ++k) mixed[k] += weight * channel->samples[k];
+        const auto channel = std::ranges::find(
+            channels, drive.channels[c], [](const ExcitationChannel& known) { return known.info.name; });
+        add_channel(*input.signals, t, *channel, weight, mixed);
       }
       emg::check_parameters(model.activation, parameters, muscle.name);
       emg::activate(model.activation, parameters, mixed, grid.rate_hz, activation);
-      data::Signal signal;
-      signal.info = grid;
-      signal.info.name = muscle.name;
-      signal.info.muscle = muscle.name;
-      signal.info.quantity = data::Quantity::activation;
-      signal.info.unit = "1";
-      signal.info.attributes = {{"activation_form", optimise::to_string(model.activation.form)},
-                                {"delay_s", fmt::format("{:.6g}", parameters.delay_s)},
-                                {"time_constant_1_s", fmt::format("{:.6g}", parameters.time_constant_1_s)},
-                                {"time_constant_2_s", fmt::format("{:.6g}", parameters.time_constant_2_s)},
-                                {"shape", fmt::format("{:.6g}", parameters.shape)}};
+      data::SignalInfo info = grid;
+      info.name = muscle.name;
+      info.muscle = muscle.name;
+      info.quantity = data::Quantity::activation;
+      info.unit = "1";
+      info.attributes = {{"activation_form", optimise::to_string(model.activation.form)},
+                         {"delay_s", fmt::format("{:.6g}", parameters.delay_s)},
+                         {"time_constant_1_s", fmt::format("{:.6g}", parameters.time_constant_1_s)},
+                         {"time_constant_2_s", fmt::format("{:.6g}", parameters.time_constant_2_s)},
+                         {"shape", fmt::format("{:.6g}", parameters.shape)}};
       const auto outside = static_cast<std::size_t>(
           std::count_if(activation.begin(), activation.end(), [](double a) { return a > 1.0; }));
       if (outside > 0)
         above[i].push_back(
             {trial.name, muscle.name, outside, *std::max_element(activation.begin(), activation.end())});
-      signal.samples = activation;
-      out.signals->write(trial.name, signal);
+      out.signals->begin_signal(trial.name, info);
+      out.signals->write_samples(trial.name, info.name, 0, activation);
     }
     if (context.progress)
       context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()), trial.name);

@@ -72,15 +72,17 @@ class Study {
     const data::Signal angle =
         signal_of(context_.input("kinematics"), name, Quantity::joint_angle, coordinate_.name);
     const std::string& first = grouping_.groups.front().members.front();
-    MomentFrames frames = moment_frames(info.signals[info.signal_index(first)], angle, std::nullopt, name);
+    const MomentFrames frames =
+        kinematics_at(common_frames(info.signals[info.signal_index(first)], angle, std::nullopt, name), angle,
+                      std::nullopt);
     Trial trial;
     std::vector<std::vector<double>> activation;
     for (const MuscleGroup& group : grouping_.groups) {
       std::vector<double> mean(frames.time.count, 0.0);
       for (std::size_t k = 0; k < group.members.size(); ++k) {
-        const data::Signal signal = activations.signals->signal(t, info.signal_index(group.members[k]));
-        const std::vector<double> a = activation_at(
-            frames, signal, options_.text("outside_activation") == "clamp", name, trial.brought);
+        const std::vector<double> a =
+            activation_at(frames, *activations.signals, t, info.signal_index(group.members[k]),
+                          options_.text("outside_activation") == "clamp", trial.brought);
         for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += group.strength_n[k] / group.sum_n() * a[i];
       }
       activation.push_back(std::move(mean));

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "data/limb/muscle_path.hpp"
 #include "data/model/parallel.hpp"
@@ -18,11 +21,15 @@ namespace {
 
 using data::Quantity;
 
+/// Frames of a piece where frames do not depend on one another; otherwise a trial is one piece.
+constexpr std::size_t piece_frames = std::size_t{1} << 17;
+
 /// One muscle's part of a trial, for the tables.
 struct Row {
   std::string trial, muscle;
-  double peak_force, mean_moment, active_share, shortest_norm, longest_norm;
-  std::size_t unloaded, slack, clamped;
+  double peak_force = 0.0, moment_sum = 0.0, active = 0.0, passive = 0.0;
+  double shortest_norm = std::numeric_limits<double>::infinity(), longest_norm = 0.0;
+  std::size_t frames = 0, unloaded = 0, slack = 0, clamped = 0;
 };
 
 struct Chain {
@@ -33,96 +40,145 @@ struct Chain {
   bool clamp;
 };
 
-std::vector<Row> run_trial(const StageContext& context, const Chain& chain, const std::string& name,
-                           StageOutput& out) {
-  const StageData& activations = context.input("activation");
-  const StageData& kinematics = context.input("kinematics");
-  const data::Signal angle = signal_of(kinematics, name, Quantity::joint_angle, chain.coordinate.name);
-  std::optional<data::Signal> velocity;
-  if (has_signal_of(kinematics, name, Quantity::joint_velocity, chain.coordinate.name)) {
-    velocity = signal_of(kinematics, name, Quantity::joint_velocity, chain.coordinate.name);
-  }
-  const std::size_t t = trial_index(activations, name);
-  std::optional<MomentFrames> grid;
-  std::vector<double> total, passive_total, length, arm, speed;
-  std::vector<Row> rows;
-  hill::MuscleScratch scratch;
-  hill::MuscleTrace trace;
-  trace.parts = true;
-  for (const data::SceneMuscle& muscle : chain.scene.muscles) {
-    if (muscle.path.kind == data::PathGeometry::Kind::none || muscle.path.coordinate != chain.coordinate.name)
-      continue;
-    const data::Signal activation =
-        activations.signals->signal(t, activations.signals->info().trials[t].signal_index(muscle.name));
-    if (!grid) {
-      grid = moment_frames(activation.info, angle, velocity, name);
-      total.assign(grid->time.count, 0.0);
-      passive_total.assign(grid->time.count, 0.0);
-      length.resize(grid->time.count);
-      arm.resize(grid->time.count);
-      speed.resize(grid->velocity_rad_s.size());
-    }
-    std::size_t clamped = 0;
-    const std::vector<double> a = activation_at(*grid, activation, chain.clamp, name, clamped);
-    const limb::MusclePath path(muscle.name, muscle.path, chain.coordinate);
-    path.evaluate(grid->angle_rad, grid->velocity_rad_s, length, arm, speed);
-    const data::MuscleParameters& parameters =
-        chain.subject ? chain.subject->muscle(muscle.name).parameters : muscle.parameters;
-    const hill::MuscleTendon unit(muscle.name, parameters, chain.model);
-    hill::forward(unit, {grid->time.rate_hz, length, speed, arm}, a, scratch, trace);
+/// One muscle of a trial: its model, its path, where its activation stands.
+struct Unit {
+  const data::SceneMuscle& muscle;
+  const data::MuscleParameters& parameters;
+  hill::MuscleTendon model;
+  limb::MusclePath path;
+  std::size_t activation = 0;  ///< signal
+  Row row;
+};
 
-    Row row{name,
-            muscle.name,
-            0.0,
-            0.0,
-            0.0,
-            1e300,
-            0.0,
-            trace.count(hill::FrameStatus::unloaded),
-            trace.count(hill::FrameStatus::slack),
-            clamped};
-    double active = 0.0, passive = 0.0;
-    for (std::size_t i = 0; i < grid->time.count; ++i) {
-      total[i] += trace.moment_N_m[i];
+/// A trial, piece by piece: no more than a piece of each signal is in memory.
+class TrialRun {
+ public:
+  TrialRun(const StageContext& context, const Chain& chain, const std::string& name, StageOutput& out)
+      : chain_(chain), activations_(context.input("activation")), name_(name), out_(*out.signals) {
+    const StageData& kinematics = context.input("kinematics");
+    angle_ = signal_of(kinematics, name, Quantity::joint_angle, chain.coordinate.name);
+    if (has_signal_of(kinematics, name, Quantity::joint_velocity, chain.coordinate.name))
+      velocity_ = signal_of(kinematics, name, Quantity::joint_velocity, chain.coordinate.name);
+    trial_ = trial_index(activations_, name);
+    find_muscles();
+    const data::TrialInfo& info = activations_.signals->info().trials[trial_];
+    frames_ = common_frames(info.signals[units_.front().activation], angle_, velocity_, name);
+  }
+
+  std::vector<Row> operator()() {
+    announce();
+    const std::size_t count = frames_.time.count;
+    const bool independent = hill::frames_are_independent(chain_.model, velocity_.has_value());
+    const std::size_t pieces = independent ? (count - 1) / piece_frames + 1 : 1;
+    for (std::size_t p = 0; p < pieces; ++p) {
+      const std::size_t from = p * count / pieces, to = (p + 1) * count / pieces;
+      run(kinematics_at(frames_.piece(from, to - from), angle_, velocity_), from);
+    }
+    std::vector<Row> rows;
+    for (Unit& unit : units_) rows.push_back(std::move(unit.row));
+    return rows;
+  }
+
+ private:
+  void find_muscles() {
+    const data::TrialInfo& info = activations_.signals->info().trials[trial_];
+    for (const data::SceneMuscle& muscle : chain_.scene.muscles) {
+      if (muscle.path.kind == data::PathGeometry::Kind::none ||
+          muscle.path.coordinate != chain_.coordinate.name)
+        continue;
+      const data::MuscleParameters& parameters =
+          chain_.subject ? chain_.subject->muscle(muscle.name).parameters : muscle.parameters;
+      units_.push_back({muscle,
+                        parameters,
+                        hill::MuscleTendon(muscle.name, parameters, chain_.model),
+                        limb::MusclePath(muscle.name, muscle.path, chain_.coordinate),
+                        info.signal_index(muscle.name),
+                        {.trial = name_, .muscle = muscle.name}});
+    }
+    if (units_.empty())
+      throw data::InputError(
+          "missing-muscle",
+          fmt::format("no muscle of the scene spans the coordinate `{}`", chain_.coordinate.name),
+          "give muscles a geometry");
+  }
+
+  void announce() {
+    for (const Unit& unit : units_) {
+      const auto begin = [&](const std::string& suffix, Quantity quantity, const std::string& unit_text) {
+        data::SignalInfo info = signal_on(frames_.time, unit.muscle.name + suffix, quantity, unit_text);
+        info.muscle = unit.muscle.name;
+        out_.begin_signal(name_, info);
+      };
+      begin("_force", Quantity::muscle_force, "N");
+      begin("_fibre_length", Quantity::fibre_length, "m");
+      begin("_fibre_velocity", Quantity::fibre_velocity, "m/s");
+      begin("_moment_arm", Quantity::moment_arm, "m");
+    }
+    data::SignalInfo moment = signal_on(frames_.time, moment_name(), Quantity::joint_moment, "N m");
+    moment.coordinate = chain_.coordinate.name;
+    out_.begin_signal(name_, moment);
+    out_.begin_signal(name_, signal_on(frames_.time, passive_moment_name(chain_.coordinate.name),
+                                       Quantity::joint_moment, "N m"));
+  }
+
+  void run(const MomentFrames& frames, std::size_t from) {
+    total_.assign(frames.time.count, 0.0);
+    passive_total_.assign(frames.time.count, 0.0);
+    length_.resize(frames.time.count);
+    arm_.resize(frames.time.count);
+    speed_.resize(frames.velocity_rad_s.size());
+    for (Unit& unit : units_) {
+      const std::vector<double> a = activation_at(frames, *activations_.signals, trial_, unit.activation,
+                                                  chain_.clamp, unit.row.clamped);
+      unit.path.evaluate(frames.angle_rad, frames.velocity_rad_s, length_, arm_, speed_);
+      trace_.parts = true;
+      hill::forward(unit.model, {frames.time.rate_hz, length_, speed_, arm_}, a, scratch_, trace_);
+      add(unit);
+      const std::string& muscle = unit.muscle.name;
+      out_.write_samples(name_, muscle + "_force", from, trace_.force_N);
+      out_.write_samples(name_, muscle + "_fibre_length", from, trace_.fibre_length_m);
+      out_.write_samples(name_, muscle + "_fibre_velocity", from, trace_.fibre_velocity_m_s);
+      out_.write_samples(name_, muscle + "_moment_arm", from, arm_);
+    }
+    out_.write_samples(name_, moment_name(), from, total_);
+    out_.write_samples(name_, passive_moment_name(chain_.coordinate.name), from, passive_total_);
+  }
+
+  void add(Unit& unit) {
+    Row& row = unit.row;
+    row.frames += total_.size();
+    row.unloaded += trace_.count(hill::FrameStatus::unloaded);
+    row.slack += trace_.count(hill::FrameStatus::slack);
+    for (std::size_t i = 0; i < total_.size(); ++i) {
+      total_[i] += trace_.moment_N_m[i];
       // The share of the parallel elastic element in the fibre's force; what damps belongs to the active part.
-      const double parts = trace.active_norm[i] + trace.passive_norm[i];
-      if (parts > 0.0) passive_total[i] += trace.moment_N_m[i] * trace.passive_norm[i] / parts;
-      row.peak_force = std::max(row.peak_force, trace.force_N[i]);
-      row.mean_moment += trace.moment_N_m[i] / static_cast<double>(grid->time.count);
-      active += std::abs(trace.active_norm[i]);
-      passive += std::abs(trace.passive_norm[i]);
-      const double norm = trace.fibre_length_m[i] / parameters.optimal_fibre_length_m;
+      const double parts = trace_.active_norm[i] + trace_.passive_norm[i];
+      if (parts > 0.0) passive_total_[i] += trace_.moment_N_m[i] * trace_.passive_norm[i] / parts;
+      row.peak_force = std::max(row.peak_force, trace_.force_N[i]);
+      row.moment_sum += trace_.moment_N_m[i];
+      row.active += std::abs(trace_.active_norm[i]);
+      row.passive += std::abs(trace_.passive_norm[i]);
+      const double norm = trace_.fibre_length_m[i] / unit.parameters.optimal_fibre_length_m;
       row.shortest_norm = std::min(row.shortest_norm, norm);
       row.longest_norm = std::max(row.longest_norm, norm);
     }
-    row.active_share = active + passive > 0.0 ? active / (active + passive) : 0.0;
-    rows.push_back(row);
-
-    const auto write = [&](const std::string& suffix, Quantity quantity, const std::string& unit_text,
-                           const std::vector<double>& samples) {
-      data::Signal signal{signal_on(grid->time, muscle.name + suffix, quantity, unit_text), samples};
-      signal.info.muscle = muscle.name;
-      out.signals->write(name, signal);
-    };
-    write("_force", Quantity::muscle_force, "N", trace.force_N);
-    write("_fibre_length", Quantity::fibre_length, "m", trace.fibre_length_m);
-    write("_fibre_velocity", Quantity::fibre_velocity, "m/s", trace.fibre_velocity_m_s);
-    write("_moment_arm", Quantity::moment_arm, "m", arm);
   }
-  if (!grid)
-    throw data::InputError(
-        "missing-muscle",
-        fmt::format("no muscle of the scene spans the coordinate `{}`", chain.coordinate.name),
-        "give muscles a geometry");
-  data::Signal moment{signal_on(grid->time, chain.coordinate.name + "_moment", Quantity::joint_moment, "N m"),
-                      total};
-  moment.info.coordinate = chain.coordinate.name;
-  out.signals->write(name, moment);
-  out.signals->write(
-      name, {signal_on(grid->time, passive_moment_name(chain.coordinate.name), Quantity::joint_moment, "N m"),
-             passive_total});
-  return rows;
-}
+
+  std::string moment_name() const { return chain_.coordinate.name + "_moment"; }
+
+  const Chain& chain_;
+  const StageData& activations_;
+  std::string name_;
+  data::SessionSink& out_;
+  data::Signal angle_;
+  std::optional<data::Signal> velocity_;
+  std::size_t trial_ = 0;
+  CommonFrames frames_;
+  std::vector<Unit> units_;
+  std::vector<double> total_, passive_total_, length_, arm_, speed_;
+  hill::MuscleScratch scratch_;
+  hill::MuscleTrace trace_;
+};
 
 void run(const StageContext& context, StageOutput& out) {
   const data::Scene& scene = context.need_scene();
@@ -138,7 +194,7 @@ void run(const StageContext& context, StageOutput& out) {
   std::vector<std::vector<Row>> rows(context.trials.size());
   std::atomic<std::size_t> done{0};
   data::parallel_for(context.trials.size(), context.threads, [&](std::size_t i) {
-    rows[i] = run_trial(context, chain, context.trials[i], out);
+    rows[i] = TrialRun(context, chain, context.trials[i], out)();
     if (context.progress)
       context.progress(static_cast<double>(++done) / static_cast<double>(context.trials.size()),
                        context.trials[i]);
@@ -158,8 +214,10 @@ void run(const StageContext& context, StageOutput& out) {
   std::size_t clamped = 0, slack = 0;
   for (const auto& trial : rows) {
     for (const Row& r : trial) {
-      table.row({r.trial, r.muscle, r.peak_force, r.mean_moment, r.active_share, r.shortest_norm,
-                 r.longest_norm, static_cast<double>(r.unloaded), static_cast<double>(r.slack),
+      const double parts = r.active + r.passive;
+      table.row({r.trial, r.muscle, r.peak_force, r.moment_sum / static_cast<double>(r.frames),
+                 parts > 0.0 ? r.active / parts : 0.0, r.shortest_norm, r.longest_norm,
+                 static_cast<double>(r.unloaded), static_cast<double>(r.slack),
                  static_cast<double>(r.clamped)});
       clamped += r.clamped;
       slack += r.slack;

@@ -63,13 +63,13 @@ const data::Subject& subject_of(const StageData& data) {
   return *data.subject;
 }
 
-std::vector<data::Signal> excitation_channels(const StageData& excitation, const std::string& trial,
-                                              const data::Subject* subject) {
+std::vector<ExcitationChannel> excitation_channels(const StageData& excitation, const std::string& trial,
+                                                   const data::Subject* subject) {
   const std::size_t t = trial_index(excitation, trial);
   const data::TrialInfo& info = excitation.signals->info().trials[t];
-  std::vector<data::Signal> channels;
+  std::vector<ExcitationChannel> channels;
   for (const std::size_t s : signals_of(info, data::Quantity::excitation)) {
-    data::Signal channel = excitation.signals->signal(t, s);
+    ExcitationChannel channel{s, info.signals[s], 1.0};
     const data::SignalInfo& c = channel.info;
     if (!channels.empty()) {
       const data::SignalInfo& first = channels.front().info;
@@ -81,7 +81,7 @@ std::vector<data::Signal> excitation_channels(const StageData& excitation, const
       }
     }
     if (subject && subject->channel_gains.contains(c.name)) {
-      for (double& e : channel.samples) e *= subject->channel_gains.at(c.name);
+      channel.gain = subject->channel_gains.at(c.name);
       channel.info.unit = "1";
     } else if (c.unit != "1") {
       throw data::InputError(

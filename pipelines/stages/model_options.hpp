@@ -20,10 +20,18 @@ optimise::ModelChoice model_choice(const Options& options);  ///< both groups
 /// The subject a stage's output carries; InputError("missing-subject") if it carries none.
 const data::Subject& subject_of(const StageData& data);
 
-/// A trial's excitations, multiplied by the subject's gains where it has some. Throws InputError: "missing-signal",
-/// "rate-mismatch" (channels on different grids), "not-normalised" (an envelope in V without a subject's gain).
-std::vector<data::Signal> excitation_channels(const StageData& excitation, const std::string& trial,
-                                              const data::Subject* subject);
+/// An excitation of a trial: where it stands, its header (unit "1") and the factor to its samples.
+struct ExcitationChannel {
+  std::size_t signal = 0;
+  data::SignalInfo info;
+  double gain = 1.0;
+};
+
+/// A trial's excitations, with the subject's gains where it has some; samples are not read. Throws InputError:
+/// "missing-signal", "rate-mismatch" (channels on different grids), "not-normalised" (an envelope in V without a
+/// subject's gain).
+std::vector<ExcitationChannel> excitation_channels(const StageData& excitation, const std::string& trial,
+                                                   const data::Subject* subject);
 
 /// Which samples of a reference moment are to be compared: its stage's signal `use`; empty where there is none.
 std::vector<bool> use_of(const StageData& moment, const std::string& trial);

@@ -9,7 +9,11 @@
 
 namespace brachium::pipelines {
 
-MomentFrames moment_frames(const data::SignalInfo& activation, const data::Signal& angle,
+CommonFrames CommonFrames::piece(std::size_t from, std::size_t count) const {
+  return {{time.rate_hz, time.time_s(from), count}, first + from};
+}
+
+CommonFrames common_frames(const data::SignalInfo& activation, const data::Signal& angle,
                            const std::optional<data::Signal>& velocity, const std::string& trial) {
   const data::SignalInfo& a = activation;
   double from = std::max(a.start_time_s, angle.info.start_time_s),
@@ -29,9 +33,13 @@ MomentFrames moment_frames(const data::SignalInfo& activation, const data::Signa
             a.start_time_s, a.end_time_s(), angle.info.start_time_s, angle.info.end_time_s(), trial),
         "check the start times in the session description");
   }
-  MomentFrames frames;
-  frames.first = static_cast<std::size_t>(first);
-  frames.time = {a.rate_hz, a.start_time_s + first / a.rate_hz, static_cast<std::size_t>(last - first) + 1};
+  return {{a.rate_hz, a.start_time_s + first / a.rate_hz, static_cast<std::size_t>(last - first) + 1},
+          static_cast<std::size_t>(first)};
+}
+
+MomentFrames kinematics_at(const CommonFrames& common, const data::Signal& angle,
+                           const std::optional<data::Signal>& velocity) {
+  MomentFrames frames{common, {}, {}};
   std::vector<double> times(frames.time.count);
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = frames.time.time_s(i);
   frames.angle_rad = data::evaluate_at(angle, times);
@@ -51,17 +59,17 @@ data::SignalInfo signal_on(const data::TimeGrid& grid, const std::string& name, 
   return info;
 }
 
-std::vector<double> activation_at(const MomentFrames& frames, const data::Signal& activation, bool clamp,
-                                  const std::string& trial, std::size_t& brought) {
-  std::vector<double> a(
-      activation.samples.begin() + static_cast<std::ptrdiff_t>(frames.first),
-      activation.samples.begin() + static_cast<std::ptrdiff_t>(frames.first + frames.time.count));
+std::vector<double> activation_at(const CommonFrames& frames, const data::SessionSource& source,
+                                  std::size_t trial, std::size_t signal, bool clamp, std::size_t& brought) {
+  std::vector<double> a(frames.time.count);
+  source.read(trial, signal, frames.first, a);
   for (double& value : a) {
     if (value >= 0.0 && value <= 1.0) continue;
     if (!clamp && value > 1.0) {
       throw data::InputError("activation-range",
                              fmt::format("activation of `{}` in trial `{}` is {:.4f}, above 1",
-                                         activation.info.name, trial, value),
+                                         source.info().trials[trial].signals[signal].name,
+                                         source.info().trials[trial].name, value),
                              "the maximum contraction was not maximal; choose `outside_activation = "
                              "\"clamp\"` to count and clamp such samples");
     }

@@ -38,6 +38,25 @@ class EverySetForward : public ::testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Forward, EverySetForward, ::testing::ValuesIn(CurveSet::names()),
                          [](const auto& set) { return set.param; });
 
+TEST_P(EverySetForward, RigidPiecesOfATrialAreTheTrialToTheLastBit) {
+  const MuscleModelOptions o = options(TendonKind::rigid);
+  ASSERT_TRUE(frames_are_independent(o, true));
+  EXPECT_FALSE(frames_are_independent(o, false));
+  EXPECT_FALSE(frames_are_independent(options(TendonKind::elastic), true));
+  EXPECT_FALSE(frames_are_independent(ceinms_options(TendonKind::rigid), true));
+  const MuscleTendon muscle("TRI", triceps(), o);
+  const Swing s(200.0, 400);
+  const MuscleTrace whole = run(muscle, s);
+  for (const auto& [from, count] : {std::pair<std::size_t, std::size_t>{0, 137}, {137, 1}, {138, 262}}) {
+    MuscleScratch scratch;
+    MuscleTrace out;
+    const auto piece = [&](const std::vector<double>& v) { return std::span(v).subspan(from, count); };
+    forward(muscle, {s.rate_hz, piece(s.length), piece(s.velocity), piece(s.arm)}, piece(s.activation),
+            scratch, out);
+    for (std::size_t k = 0; k < count; ++k) ASSERT_EQ(out.force_N[k], whole.force_N[from + k]);
+  }
+}
+
 TEST_P(EverySetForward, RigidForceIsTheFormula) {
   const data::MuscleParameters p = triceps();
   const MuscleTendon muscle("TRI", p, options(TendonKind::rigid));

@@ -50,6 +50,33 @@ TEST(MomentStage, IsTheSumOfForceTimesMomentArm) {
   EXPECT_LT(largest_difference(sum, signal(m, "curl", "elbow_flexion_moment").samples), 1e-10);
 }
 
+TEST(MomentStage, ALongTrialInPiecesIsTheShortOneOverAndOver) {
+  constexpr std::size_t period = 1000, count = 300000;
+  const auto repeated = [](const StageData& data) {
+    return changed(data, [](data::Session& session) {
+      std::erase_if(session.trials, [](const data::Trial& t) { return t.name != "curl"; });
+      for (data::Signal& s : session.trials[0].signals) {
+        ASSERT_EQ(s.info.rate_hz, 200.0);
+        ASSERT_EQ(s.info.start_time_s, 0.0);
+        std::vector<double> all(count);
+        for (std::size_t i = 0; i < count; ++i) all[i] = s.samples[i % period];
+        s.samples = std::move(all);
+        s.info.count = count;
+      }
+    });
+  };
+  const StageData kinematics =
+      run("limb.kinematics", "lowpass_hz = 0", {{"signals", {&recordings()}}}, {"curl"});
+  const StageData activation = repeated(true_activation()), motion = repeated(kinematics);
+  const StageData longer =
+      run("hill.moment", "", {{"activation", {&activation}}, {"kinematics", {&motion}}}, {"curl"});
+  const std::vector<double> whole = signal(longer, "curl", "elbow_flexion_moment").samples;
+  ASSERT_EQ(whole.size(), count);
+  for (std::size_t i = period; i < count; ++i)
+    ASSERT_NEAR(whole[i], whole[i % period], 1e-9 * std::abs(whole[i % period]) + 1e-9) << i;
+  EXPECT_EQ(longer.tables.at("muscles").rows(), elbow().muscles.size());
+}
+
 TEST(MomentStage, ASubjectsStrengthScalesTheMoment) {
   StageData subject = subject_data();
   for (data::SubjectMuscle& m : subject.subject->muscles) m.parameters.strength = 1.25;
