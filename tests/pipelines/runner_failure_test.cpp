@@ -2,16 +2,13 @@
 // happened.
 
 #include <gmock/gmock.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "pipelines/run_folder.hpp"
+#include "runner_child.hpp"
 #include "runner_fake_stages.hpp"
 #include "tests/support/paths.hpp"
 
@@ -20,43 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-
-/// A program of the tests' command line, started in a folder; its output goes to files there.
-class Child {
- public:
-  Child(const fs::path& folder, std::vector<std::string> arguments, rlim_t file_limit = RLIM_INFINITY)
-      : folder_(folder) {
-    arguments.insert(arguments.begin(), BRACHIUM_FAKE_PROGRAM);
-    std::vector<char*> argv;
-    for (std::string& a : arguments) argv.push_back(a.data());
-    argv.push_back(nullptr);
-    const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string(),
-                      where = folder.string();
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      const rlimit limit{file_limit, file_limit};
-      if (::chdir(where.c_str()) != 0 || !std::freopen(out.c_str(), "w", stdout) ||
-          !std::freopen(err.c_str(), "w", stderr))
-        ::_exit(99);
-      if (file_limit != RLIM_INFINITY) ::setrlimit(RLIMIT_FSIZE, &limit);
-      ::execv(argv[0], argv.data());
-      ::_exit(99);
-    }
-  }
-  void send(int signal) const { ::kill(pid_, signal); }
-  /// Exit code, or minus the signal that ended it.
-  int wait() const {
-    int status = 0;
-    ::waitpid(pid_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  }
-  std::string out() const { return file_text(folder_ / "stdout"); }
-  std::string err() const { return file_text(folder_ / "stderr"); }
-
- private:
-  fs::path folder_;
-  pid_t pid_ = -1;
-};
 
 bool has_partial(const fs::path& folder) {
   std::error_code failed;
@@ -144,6 +104,17 @@ TEST_F(FailureTest, AFolderThatCannotBeMadeIsTold) {
   const Child refused = start();
   EXPECT_EQ(refused.wait(), 2);
   EXPECT_THAT(refused.err(), HasSubstr("error[cannot-write]: cannot make the run folder `"));
+}
+
+TEST_F(FailureTest, AFolderThatCannotBeWrittenToIsTold) {
+  // A folder of the kernel's: not even root may write there.
+  if (!fs::is_directory("/sys/kernel")) GTEST_SKIP() << "no folder that is read-only for everybody";
+  define(chain);
+  const Child refused(folder_, {"run", "study.toml", "--out", "/sys/kernel"});
+  EXPECT_EQ(refused.wait(), 2);
+  EXPECT_THAT(refused.err(), ::testing::MatchesRegex(
+                                 "error.cannot-write.: cannot write to the run folder `/sys/kernel`: .*\n"
+                                 "  help: choose another with --out\n"));
 }
 
 TEST_F(FailureTest, ExitCodesTellWhatWentWrong) {
