@@ -367,13 +367,19 @@ std::string calibration_methods(const ReportContext& context) {
     }
     free.push_back(fmt::format("{} ({})", name, f.text("scope")));
   }
+  const std::string noise =
+      o.maybe_number("excitation_cv") == 0.0
+          ? "; noise in the excitation was not allowed for"
+          : fmt::format(
+                " and for noise in the excitation, by a corrected score (Nakamura 1990, "
+                "doi:10.1093/biomet/77.1.127) simulated as by Cook & Stefanski 1994, "
+                "doi:10.1080/01621459.1994.10476871; the bias that it brings was {}",
+                o.boolean("correct_bias") ? "taken off the fitted values" : "reported, not taken off");
   return fmt::format(
       "The model was calibrated by bounded least squares ({}) with exact derivatives of the whole chain; "
-      "free were {}. Standard errors allow for autocorrelated "
-      "residuals (Newey & West 1987, doi:10.2307/1913610) and for errors in the excitation by simulation "
-      "(Cook & Stefanski 1994, "
-      "doi:10.1080/01621459.1994.10476871).",
-      report::in_words(o.text("solver")), fmt::join(free, ", "));
+      "free were {}. Standard errors allow for autocorrelated residuals (Newey & West 1987, "
+      "doi:10.2307/1913610){}.",
+      report::in_words(o.text("solver")), fmt::join(free, ", "), noise);
 }
 
 }  // namespace brachium::pipelines

@@ -121,12 +121,27 @@ void fill(const ReportContext& context, report::Section& section) {
 std::string methods(const ReportContext& context) {
   const auto subject = context.inputs.find("subject");
   const bool calibrated = subject != context.inputs.end() && !subject->second.empty();
-  return std::string(
-             "Excitations became activations through second-order dynamics with an electromechanical delay "
-             "(Lloyd & Besier 2003, "
-             "doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004, doi:10.1123/jab.20.4.367), "
-             "discretised exactly so that the result does not "
-             "depend on the sampling rate, and a static nonlinearity") +
+  const data::Subject* s = calibrated ? &subject_of(*subject->second.front()) : nullptr;
+  const optimise::ModelChoice model =
+      s ? optimise::ModelChoice::from_map(s->model) : activation_choice(*context.options);
+  std::string text = "Excitations became activations through ";
+  if (model.activation.form == emg::ActivationForm::first_order) {
+    text += "first-order dynamics with an electromechanical delay (Thelen 2003, doi:10.1115/1.1531112)";
+  } else {
+    text +=
+        "second-order dynamics with an electromechanical delay (Lloyd & Besier 2003, "
+        "doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004, doi:10.1123/jab.20.4.367), ";
+    text += model.activation.form == emg::ActivationForm::recursive
+                ? "as the recursive filter of that source"
+                : "discretised exactly so that the result does not depend on the sampling rate";
+  }
+  if (model.activation.nonlinearity == emg::Nonlinearity::exponential)
+    text += ", and an exponential nonlinearity";
+  if (model.activation.nonlinearity == emg::Nonlinearity::piecewise)
+    text +=
+        ", and a static nonlinearity in two pieces (Manal & Buchanan 2003, "
+        "doi:10.1016/S0021-9290(03)00152-0)";
+  return text +
          (calibrated ? ", with the calibrated subject's parameters." : ", with the scene's parameters.");
 }
 

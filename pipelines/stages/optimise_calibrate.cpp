@@ -73,7 +73,7 @@ void add_optimise_calibrate(Catalogue& catalogue) {
       "The result is a subject, also written as a file of its "
       "own that other pipelines read.\n"
       "Sources: Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1; Newey & West 1987, "
-      "doi:10.2307/1913610; Cook & Stefanski 1994, "
+      "doi:10.2307/1913610; Nakamura 1990, doi:10.1093/biomet/77.1.127; Cook & Stefanski 1994, "
       "doi:10.1080/01621459.1994.10476871.";
   spec.needs_scene = true;
   spec.output = PortType::subject;

@@ -1,7 +1,9 @@
-"""Is a report well-formed and self-contained? Exit code 0 and the word "sound", or what is wrong.
+"""Is a report well-formed, self-contained and below 5 MB, and does it say what it must? Exit code 0 and the word
+"sound", or what is wrong.
 
-Run: python3 report_wellformed.py report.html
+Run: python3 report_wellformed.py report.html [text that a reader must find, in this order]...
 """
+import re
 import sys
 import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
@@ -16,6 +18,11 @@ class Checker(HTMLParser):
         super().__init__(convert_charrefs=True)
         self.open, self.ids, self.targets, self.svg_start = [], [], [], None
         self.counts = {}
+        self.read = []
+
+    def handle_data(self, data):
+        if not {"style", "script"} & set(self.open):
+            self.read.append(data)
 
     def handle_starttag(self, tag, attributes):
         self.look(tag, dict(attributes))
@@ -52,6 +59,14 @@ text = open(sys.argv[1], encoding="utf-8", errors="strict").read()
 checker = Checker()
 checker.feed(text)
 checker.close()
+if len(text.encode()) > 5e6:
+    wrong.append(f"{len(text.encode()) / 1e6:.1f} MB")
+reading, found = re.sub(r"\s+", " ", " ".join(checker.read)), 0
+for wanted in sys.argv[2:]:
+    at = reading.find(wanted, found)
+    if at < 0:
+        wrong.append(f"nobody can read `{wanted}`" + (" after the texts before it" if wanted in reading else ""))
+    found = max(at, found)
 if checker.open:
     wrong.append(f"never closed: {checker.open}")
 if len(set(checker.ids)) != len(checker.ids):
