@@ -8,6 +8,7 @@
 #include "data/io/scene_file.hpp"
 #include "data/io/session_description.hpp"
 #include "data/io/session_file.hpp"
+#include "data/io/subject_file.hpp"
 #include "pipelines/options.hpp"
 #include "pipelines/settings.hpp"
 
@@ -259,8 +260,12 @@ class Reader {
     if (wire.stage.empty()) {
       if (port.type != PortType::subject) {
         wrong_port("only a subject can be read from a file");
-      } else {
-        file_exists(wire.file, wire.where, "subject");
+      } else if (file_exists(wire.file, wire.where, "subject")) {
+        try {
+          io::read_subject(wire.file);
+        } catch (const InputError& mistakes) {
+          take(mistakes, wire.where);
+        }
       }
       return;
     }

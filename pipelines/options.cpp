@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 #include <type_traits>
+
+#include "data/model/units.hpp"
 
 namespace brachium::pipelines {
 namespace {
@@ -15,22 +16,6 @@ namespace {
 using data::Diagnostic;
 using data::Severity;
 using io::TomlNode;
-
-/// Endings of option names that are units, longest first so that "rad_s" is not taken for "s".
-constexpr std::array unit_endings{
-    "per_s", "kg_m2", "N_m3", "n_m3", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s",
-    "m_s",   "khz",   "mhz",  "hz",   "min",      "rad",     "deg",   "Nm",    "kN",   "kg",  "mg",
-    "lb",    "ms",    "us",   "mm",   "cm",       "Pa",      "kPa",   "MPa",   "pa",   "kpa", "mpa",
-    "mV",    "uV",    "uv",   "mv",   "s",        "m",       "g",     "N",     "V",    "norm"};
-
-/// An option's name without its unit: "lowpass_hz" -> "lowpass".
-std::string stem_of(const std::string& key) {
-  for (const std::string ending : unit_endings) {
-    if (key.size() > ending.size() + 1 && key.ends_with("_" + ending))
-      return key.substr(0, key.size() - ending.size() - 1);
-  }
-  return key;
-}
 
 std::string with_article(OptionType type) {
   return type == OptionType::boolean ? to_string(type) : "a " + to_string(type);
@@ -84,7 +69,8 @@ class Reader {
       if (std::find(reserved.begin(), reserved.end(), key) != reserved.end()) continue;
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
       const auto same_stem = std::find_if(specs.begin(), specs.end(), [&](const OptionSpec& spec) {
-        return !spec.unit.empty() && spec.unit != "1" && stem_of(spec.key) == stem_of(key);
+        return !spec.unit.empty() && spec.unit != "1" &&
+               data::split_unit(spec.key).name == data::split_unit(key).name;
       });
       if (same_stem != specs.end()) {
         unit_mistakes_.insert(same_stem->key);

@@ -58,7 +58,7 @@ class TomlTable {
  public:
   TomlTable(const TomlNode& node, std::vector<data::Diagnostic>& diagnostics, std::string context = {});
 
-  bool has(const std::string& key) const { return node_->find(key) != nullptr; }
+  bool has(const std::string& key) const;
   const TomlNode& node() const { return *node_; }
 
   std::optional<double> number(const std::string& key);
@@ -84,7 +84,7 @@ class TomlTable {
   void warning(const std::string& code, const std::string& message, const std::string& key = {},
                const std::string& help = {});
   data::SourceSpan span_of(const std::string& key) const;  ///< the key's value, or the table itself
-  /// Reports unknown keys, each with the nearest known one.
+  /// Reports unknown keys, each with the nearest one that was asked for, or with the unit that it is given in.
   void finish();
 
  private:
@@ -95,6 +95,7 @@ class TomlTable {
   std::vector<data::Diagnostic>* diagnostics_;
   std::string context_;  ///< "stage `excitation`", for messages
   std::set<std::string> known_;
+  mutable std::set<std::string> asked_;  ///< of `has`, known or not: what a mistaken key may have meant
 };
 
 /// Throws InputError with all diagnostics if any of them is an error.

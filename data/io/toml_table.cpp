@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "data/io/toml.hpp"
+#include "data/model/units.hpp"
 
 namespace brachium::io {
 
@@ -17,6 +18,11 @@ using data::SourceSpan;
 
 TomlTable::TomlTable(const TomlNode& node, std::vector<Diagnostic>& diagnostics, std::string context)
     : node_(&node), diagnostics_(&diagnostics), context_(std::move(context)) {}
+
+bool TomlTable::has(const std::string& key) const {
+  asked_.insert(key);
+  return node_->find(key) != nullptr;
+}
 
 const TomlNode* TomlTable::take(const std::string& key) {
   known_.insert(key);
@@ -192,13 +198,27 @@ SourceSpan TomlTable::span_of(const std::string& key) const {
 }
 
 void TomlTable::finish() {
-  const std::vector<std::string> known(known_.begin(), known_.end());
+  std::set<std::string> meant = known_;
+  meant.insert(asked_.begin(), asked_.end());
+  const std::vector<std::string> candidates(meant.begin(), meant.end());
   for (const auto& [key, value] : node_->members) {
     if (known_.contains(key)) continue;
-    diagnostics_->push_back(
-        {Severity::error, "unknown-key",
-         fmt::format("`{}` is not a key of {}", key, context_.empty() ? "this file" : context_),
-         value.key_where, data::suggest(key, known)});
+    const std::string text =
+        fmt::format("`{}` is not a key of {}", key, context_.empty() ? "this file" : context_);
+    const data::NamedUnit given = data::split_unit(key);
+    const auto right = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+      const data::NamedUnit known = data::split_unit(candidate);
+      return !given.unit.empty() && !known.unit.empty() && known.name == given.name && candidate != key;
+    });
+    if (right != candidates.end()) {
+      const std::string unit = data::split_unit(*right).unit;
+      diagnostics_->push_back({Severity::error, "wrong-unit",
+                               fmt::format("{}: it is given in {}", text, unit), value.key_where,
+                               fmt::format("write `{}`, with the value in {}", *right, unit)});
+    } else {
+      diagnostics_->push_back(
+          {Severity::error, "unknown-key", text, value.key_where, data::suggest(key, candidates)});
+    }
   }
 }
 

@@ -129,4 +129,18 @@ double convert(double value, std::string_view from, std::string_view to) {
   return value * (a.to_si / b.to_si);
 }
 
+NamedUnit split_unit(const std::string& key) {
+  // Longest first, so that "rad_s" is not taken for "s".
+  static constexpr std::array unit_endings{
+      "per_s", "kg_m2", "N_m3", "n_m3", "per_cent", "percent", "rad_s", "deg_s", "m_s2", "N_m", "N_s",
+      "m_s",   "khz",   "mhz",  "hz",   "min",      "rad",     "deg",   "Nm",    "kN",   "kg",  "mg",
+      "lb",    "ms",    "us",   "mm",   "cm",       "Pa",      "kPa",   "MPa",   "pa",   "kpa", "mpa",
+      "mV",    "uV",    "uv",   "mv",   "s",        "m",       "g",     "N",     "V",    "norm"};
+  for (const std::string_view ending : unit_endings) {
+    if (key.size() > ending.size() + 1 && key.ends_with(ending) && key[key.size() - ending.size() - 1] == '_')
+      return {key.substr(0, key.size() - ending.size() - 1), std::string(ending)};
+  }
+  return {key, {}};
+}
+
 }  // namespace brachium::data

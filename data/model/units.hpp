@@ -22,4 +22,11 @@ Unit parse_unit(std::string_view symbol);
 /// value in `from` expressed in `to`; throws InputError("wrong-unit") when the dimensions differ.
 double convert(double value, std::string_view from, std::string_view to);
 
+/// A key of a definition and the unit that it ends with.
+struct NamedUnit {
+  std::string name;  ///< "lowpass" of "lowpass_hz"; the whole key where it ends with no unit
+  std::string unit;  ///< "hz", as written; empty where there is none
+};
+NamedUnit split_unit(const std::string& key);
+
 }  // namespace brachium::data

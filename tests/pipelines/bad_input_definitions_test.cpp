@@ -130,6 +130,28 @@ TEST_F(BadDefinition, AStageThatNeedsASceneSaysSo) {
               HasSubstr("error[missing-scene]: "));
 }
 
+TEST_F(BadDefinition, EmptyFilesAreTold) {
+  std::ofstream(folder_ / "empty.toml");
+  EXPECT_EQ(mistakes("", ""),
+            "error[missing-key]: the definition has no table [pipeline]\n"
+            "  --> d.toml:1:1\n"
+            "  help: start it with [pipeline] and a title\n"
+            "error[missing-key]: the definition has no [[stage]]\n"
+            "  --> d.toml:1:1\n"
+            "  help: `brachium stages` lists what there is\n");
+  const std::string all = mistakes(
+      "[[stage]]\nname = \"a\"\nrun = \"emg.envelope\"\n"
+      "[[stage]]\nname = \"b\"\nrun = \"emg.activation\"\n"
+      "input = { excitation = \"a\", subject = \"file:empty.toml\" }\n",
+      "[pipeline]\ntitle = \"t\"\nsession = \"empty.toml\"\nscene = \"empty.toml\"\n");
+  for (const char* line :
+       {"error[missing-key]: there is no [session]\n", "error[missing-key]: there is no [[trial]]\n",
+        "error[missing-key]: there is no [[file]]\n", "error[missing-key]: the table [scene] is missing\n",
+        "error[missing-key]: the scene has no [[coordinate]]\n",
+        "error[empty-file]: `empty.toml` is empty\n"})
+    EXPECT_THAT(all, HasSubstr(line));
+}
+
 TEST_F(BadDefinition, ATruncatedSessionIsTold) {
   std::filesystem::resize_file(folder_ / "s.h5", 3000);
   EXPECT_THAT(mistakes("[[stage]]\nname = \"e\"\nrun = \"emg.envelope\"\n"),

@@ -182,6 +182,7 @@ std::string noraxon_error(const std::string& text) {
 }
 
 TEST(Noraxon, BadInputIsNamed) {
+  EXPECT_EQ(noraxon_error(""), "error[empty-file]: `a..csv` is empty\n  help: export the recording again\n");
   EXPECT_EQ(noraxon_error("time,value\n0,1\n"),
             "error[not-noraxon]: `a..csv` is not a Noraxon signal export: the first row must be "
             "`type,name,time_units,begin_time,frequency,count,units`\n  --> a..csv:1\n"
@@ -252,6 +253,7 @@ TEST(Storage, InDegreesConcernsRotationalColumnsOnly) {
 }
 
 TEST(Storage, BadInputIsNamed) {
+  EXPECT_EQ(storage_error(""), "error[empty-file]: `a.sto` is empty\n  help: export the recording again\n");
   EXPECT_EQ(
       storage_error("time\ta\n0\t1\n"),
       "error[not-a-storage-file]: `a.sto` is not an OpenSim storage file: there is no line `endheader`\n"

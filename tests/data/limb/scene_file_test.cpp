@@ -184,6 +184,34 @@ TEST(SceneFile, NamesWhatIsWrongWithTheFrame) {
       "error[missing-file]: cannot read the scene `no/such/scene.toml`\n  help: check the path\n");
 }
 
+TEST(SceneFile, AnEmptyFileIsToldWhatASceneNeeds) {
+  EXPECT_EQ(errors(""),
+            "error[missing-key]: the table [scene] is missing\n"
+            "  --> scene.toml:1:1\n"
+            "error[missing-key]: the scene has no [[coordinate]]\n"
+            "  --> scene.toml:1:1\n");
+}
+
+TEST(SceneFile, ANumberInAnotherUnitIsToldItsUnit) {
+  EXPECT_EQ(errors(std::string(head) + "[[segment]]\nname = \"hand\"\nmass_g = 400\nlength_mm = 200\n"
+                                       "centre_of_mass_m = 0.1\ninertia_kg_m2 = 0.01\nsource = \"s\"\n"),
+            "error[missing-key]: segment `hand` needs `mass_kg` or `mass_fraction_of_body`\n"
+            "  --> scene.toml:9:1\n"
+            "  |\n"
+            "9 | [[segment]]\n"
+            "  | ^^^^^^^^^^^\n"
+            "error[wrong-unit]: `mass_g` is not a key of [[segment]]: it is given in kg\n"
+            "  --> scene.toml:11:1\n"
+            "   |\n"
+            "11 | mass_g = 400\n"
+            "   | ^^^^^^ write `mass_kg`, with the value in kg\n"
+            "error[wrong-unit]: `length_mm` is not a key of [[segment]]: it is given in m\n"
+            "  --> scene.toml:12:1\n"
+            "   |\n"
+            "12 | length_mm = 200\n"
+            "   | ^^^^^^^^^ write `length_m`, with the value in m\n");
+}
+
 TEST(SceneFile, NamesWhatIsWrongWithAMuscle) {
   const std::string good = muscle("BIC", "{ channels = { biceps = 1 } }");
   const auto with = [&](const std::string& what, const std::string& by) {
