@@ -139,21 +139,30 @@ GravityModel fit_gravity(const DynamometerRecord& passive, const PassiveSweepOpt
   return g;
 }
 
-GravityModel gravity_from_limb(const BodySet& limb, double machine_arm, double inclination) {
-  if (!std::isfinite(machine_arm) || !std::isfinite(inclination)) {
+namespace {
+
+GravityModel gravity_of(double first_moment, double inclination, const std::string& of) {
+  if (!std::isfinite(first_moment) || !std::isfinite(inclination))
     throw InputError("not-finite",
-                     "the machine arm's first moment or the upper arm's inclination is not finite");
-  }
-  const double weight = (limb.first_moment_kg_m() + machine_arm) * standard_gravity_m_per_s2;
+                     fmt::format("the first moment of {} or the upper arm's inclination is not finite", of));
+  const double weight = first_moment * standard_gravity_m_per_s2;
   GravityModel g;
   g.cos_N_m = -weight * std::sin(inclination);
   g.sin_N_m = -weight * std::cos(inclination);
   g.origin = fmt::format(
-      "computed from the limb's masses and the machine's arm, upper arm {:.4g} deg from vertical (passive "
-      "tissue "
-      "not included)",
+      "computed from the masses of {}, upper arm {:.4g} deg from vertical (passive tissue not included)", of,
       inclination * degrees);
   return g;
+}
+
+}  // namespace
+
+GravityModel gravity_from_limb(const BodySet& limb, double inclination) {
+  return gravity_of(limb.first_moment_kg_m(), inclination, "the limb");
+}
+
+GravityModel gravity_from_machine_arm(double first_moment, double inclination) {
+  return gravity_of(first_moment, inclination, "the machine's arm");
 }
 
 double AxisOffset::moment_factor(double q) const {
@@ -166,14 +175,25 @@ double AxisOffset::angle_correction_rad(double q) const {
   return (along_m * std::sin(q) - across_m * std::cos(q)) / pad_distance_m;
 }
 
+double AxisOffset::angle_rate(double q) const {
+  return 2.0 - moment_factor(q);
+}
+
+double AxisOffset::angle_curvature(double q) const {
+  return -angle_correction_rad(q);
+}
+
 double AxisOffset::moment_relative_sd() const {
   return pad_distance_m == 0.0 ? 0.0 : sd_m / pad_distance_m;
 }
 
-DynamometerMoment dynamometer_moment(const DynamometerRecord& record, const GravityModel& gravity,
-                                     double inertia, const AxisOffset& axis) {
-  if (!(inertia >= 0.0))
-    throw InputError("out-of-range", fmt::format("the inertia must be 0 kg m^2 or greater, not {}", inertia));
+DynamometerMoment dynamometer_moment(const DynamometerRecord& record, const PassiveLoad& limb,
+                                     const PassiveLoad& machine, const AxisOffset& axis) {
+  for (const double inertia : {limb.inertia_kg_m2, machine.inertia_kg_m2}) {
+    if (!(inertia >= 0.0))
+      throw InputError("out-of-range",
+                       fmt::format("the inertia must be 0 kg m^2 or greater, not {}", inertia));
+  }
   if (!(axis.pad_distance_m >= 0.0) || !(axis.sd_m >= 0.0) || !std::isfinite(axis.along_m) ||
       !std::isfinite(axis.across_m)) {
     throw InputError(
@@ -194,14 +214,21 @@ DynamometerMoment dynamometer_moment(const DynamometerRecord& record, const Grav
   const Index n = record.angle_rad.size();
   DynamometerMoment m;
   m.edge_samples = record.edge_samples;
-  for (VectorXd* v : {&m.angle_rad, &m.moment_N_m, &m.gravity_N_m, &m.inertial_N_m, &m.sd_N_m}) v->resize(n);
+  for (VectorXd* v :
+       {&m.angle_rad, &m.velocity_rad_per_s, &m.moment_N_m, &m.gravity_N_m, &m.inertial_N_m, &m.sd_N_m})
+    v->resize(n);
+  const double residual = std::hypot(limb.gravity.rms_residual_N_m, machine.gravity.rms_residual_N_m);
   for (Index i = 0; i < n; ++i) {
-    const double machine = record.angle_rad(i), torque = record.torque_N_m(i);
-    m.angle_rad(i) = machine + axis.angle_correction_rad(machine);
-    m.gravity_N_m(i) = gravity(machine);
-    m.inertial_N_m(i) = inertia * record.acceleration_rad_per_s2(i);
-    m.moment_N_m(i) = axis.moment_factor(machine) * torque - m.gravity_N_m(i) + m.inertial_N_m(i);
-    m.sd_N_m(i) = std::hypot(axis.moment_relative_sd() * torque, gravity.rms_residual_N_m);
+    const double q = record.angle_rad(i), speed = record.velocity_rad_per_s(i),
+                 acceleration = record.acceleration_rad_per_s2(i), factor = axis.moment_factor(q);
+    m.angle_rad(i) = q + axis.angle_correction_rad(q);
+    m.velocity_rad_per_s(i) = axis.angle_rate(q) * speed;
+    m.gravity_N_m(i) = factor * machine.gravity(q) + limb.gravity(m.angle_rad(i));
+    m.inertial_N_m(i) =
+        factor * machine.inertia_kg_m2 * acceleration +
+        limb.inertia_kg_m2 * (axis.angle_rate(q) * acceleration + axis.angle_curvature(q) * speed * speed);
+    m.moment_N_m(i) = factor * record.torque_N_m(i) - m.gravity_N_m(i) + m.inertial_N_m(i);
+    m.sd_N_m(i) = std::hypot(axis.moment_relative_sd() * record.torque_N_m(i), residual);
   }
   return m;
 }

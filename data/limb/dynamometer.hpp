@@ -5,13 +5,14 @@
 /// |----------|------------|--------|-------------------------------------------------------------------------------|
 /// | theta, T | -          | rad, N m | the machine's angle and torque, as recorded                                 |
 /// | q        | angle_rad  | rad    | joint angle, flexion positive, 0 = straight                                   |
-/// | T_l      | torque_N_m | N m    | torque that the limb exerts on the machine, flexion positive                  |
-/// | G(q)     | gravity    | N m    | moment of gravity on limb and machine arm, flexion positive                   |
-/// | I        | inertia    | kg m^2 | limb and machine arm about the joint                                          |
+/// | T_l      | torque_N_m | N m    | torque that limb and machine arm exert on the machine, flexion positive       |
+/// | G, G_m   | gravity    | N m    | moment of gravity on the limb, on the machine's arm, flexion positive         |
+/// | I, I_m   | inertia    | kg m^2 | of the limb about the joint, of the machine's arm about its axis              |
 /// | M        | moment_N_m | N m    | moment of the muscles, flexion positive                                       |
 /// | e, l     | -          | m      | joint centre from the machine's axis; machine axis to pad                     |
 ///
-/// Equation of motion of limb and machine arm, I q'' = M + G(q) - T_l, hence M = T_l - G(q) + I q''
+/// Equation of motion of limb and machine arm on one axis, (I + I_m) q'' = M + G + G_m - T_l, hence
+/// M = T_l - G - G_m + (I + I_m) q''
 /// (Winter, Wells & Orr 1981, Eur J Appl Physiol 46; Herzog 1988, J Biomech 21: gravity and inertia are what sets the
 /// machine's torque apart from the joint's moment, next to a limb that gives way in its straps, which is not modelled).
 /// Passive tissue is part of M where G is computed from masses, and part of G where G is fitted to a passive sweep.
@@ -80,10 +81,10 @@ struct PassiveSweepOptions {
 /// friction out. Throws InputError("short-sweep") naming range and need, or ("too-few-samples").
 GravityModel fit_gravity(const DynamometerRecord& passive, const PassiveSweepOptions& options = {});
 
-/// G of the limb's own masses and of the machine's arm: G(q) = -(S_limb + S_arm) g sin(q + inclination), in a
-/// vertical plane, with the upper arm inclined from straight down. Passive tissue is not part of it.
-GravityModel gravity_from_limb(const BodySet& limb, double machine_arm_first_moment_kg_m,
-                               double upper_arm_inclination_rad);
+/// G(q) = -S g sin(q + inclination) of a first moment S, in a vertical plane, with the upper arm inclined from straight
+/// down: of the limb's own masses (passive tissue is not part of it) or of the machine's arm.
+GravityModel gravity_from_limb(const BodySet& limb, double upper_arm_inclination_rad);
+GravityModel gravity_from_machine_arm(double first_moment_kg_m, double upper_arm_inclination_rad);
 
 // ---------------------------------------------------------------- axis
 
@@ -99,24 +100,33 @@ struct AxisOffset {
 
   double moment_factor(double q_rad) const;         ///< M / T_l
   double angle_correction_rad(double q_rad) const;  ///< joint angle minus machine angle
+  double angle_rate(double q_rad) const;            ///< d(joint angle)/d(machine angle) = 1 + (e . r) / l
+  double angle_curvature(double q_rad) const;       ///< its derivative, (e . t) / l
   double moment_relative_sd() const;                ///< sd / l
 };
 
 // ---------------------------------------------------------------- moment
 
+/// What weighs and turns without the muscles: the limb beyond the pad at the joint's angle, the machine's arm at the
+/// machine's. What a passive sweep shows is the machine's: it was measured there.
+struct PassiveLoad {
+  GravityModel gravity;
+  double inertia_kg_m2 = 0.0;  ///< 0 leaves the term out: exclude the ramps then
+};
+
 struct DynamometerMoment {
-  Eigen::VectorXd angle_rad;     ///< joint angle, corrected for the axis
-  Eigen::VectorXd moment_N_m;    ///< M
-  Eigen::VectorXd gravity_N_m;   ///< G(q)
-  Eigen::VectorXd inertial_N_m;  ///< I q''
-  Eigen::VectorXd sd_N_m;        ///< from the axis' uncertainty and the gravity fit's residual
+  Eigen::VectorXd angle_rad;           ///< q, joint angle: the machine's q_m corrected for the axis
+  Eigen::VectorXd velocity_rad_per_s;  ///< q'
+  Eigen::VectorXd moment_N_m;          ///< M
+  Eigen::VectorXd gravity_N_m;         ///< both loads' weight about the joint
+  Eigen::VectorXd inertial_N_m;        ///< and their inertia
+  Eigen::VectorXd sd_N_m;              ///< from the axis' uncertainty and the gravity fit's residual
   Eigen::Index edge_samples = 0;
 };
 
-/// M = (1 - (e . r) / l) T_l - G(q) + I q''. inertia_kg_m2 = 0 leaves the last term out: exclude the ramps
-/// then.
-DynamometerMoment dynamometer_moment(const DynamometerRecord& record, const GravityModel& gravity,
-                                     double inertia_kg_m2, const AxisOffset& axis = {});
+/// M = (1 - (e . r) / l) (T_l - G_m(q_m) + I_m q_m'') - G(q) + I q''.
+DynamometerMoment dynamometer_moment(const DynamometerRecord& record, const PassiveLoad& limb,
+                                     const PassiveLoad& machine, const AxisOffset& axis = {});
 
 // ---------------------------------------------------------------- phases
 

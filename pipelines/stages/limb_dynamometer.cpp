@@ -46,20 +46,31 @@ Record read_record(const StageContext& context, const data::Coordinate& coordina
           {info.rate_hz, info.start_time_s, aligned.front().samples.size()}};
 }
 
-/// Gravity of one trial: fitted to the sweep of the relaxed limb, or computed from the limb's masses.
-limb::GravityModel gravity_model(const StageContext& context, const data::Scene& scene,
-                                 const data::Coordinate& coordinate, const limb::GravityModel* fitted,
-                                 const std::string& trial) {
-  if (fitted) return *fitted;
-  if (context.options->text("gravity") == "none") {
-    limb::GravityModel none;
-    none.origin = "not corrected: the torque is declared free of gravity";
-    return none;
+/// What weighs and turns in one trial.
+struct Loads {
+  limb::PassiveLoad limb, machine;
+};
+
+Loads loads_of(const StageContext& context, const data::Scene& scene, const data::Coordinate& coordinate,
+               const limb::GravityModel* fitted, const std::string& trial) {
+  const Options& o = *context.options;
+  Loads loads;
+  const bool gravity = o.text("gravity") == "limb", inertia = o.text("inertia") == "limb";
+  if (gravity || inertia) {
+    const limb::BodySet bodies = limb::bodies_of(
+        scene, coordinate.name, trial_info(context.input("signals"), trial).conditions, trial);
+    if (gravity) {
+      loads.limb.gravity = limb::gravity_from_limb(bodies, scene.upper_arm_inclination_rad);
+      loads.machine.gravity = limb::gravity_from_machine_arm(o.number("machine_arm_first_moment_kg_m"),
+                                                             scene.upper_arm_inclination_rad);
+    }
+    if (inertia) {
+      loads.limb.inertia_kg_m2 = bodies.inertia_kg_m2();
+      loads.machine.inertia_kg_m2 = o.number("machine_arm_inertia_kg_m2");
+    }
   }
-  const limb::BodySet bodies =
-      limb::bodies_of(scene, coordinate.name, trial_info(context.input("signals"), trial).conditions, trial);
-  return limb::gravity_from_limb(bodies, context.options->number("machine_arm_first_moment_kg_m"),
-                                 scene.upper_arm_inclination_rad);
+  if (fitted) loads.machine.gravity = *fitted;
+  return loads;
 }
 
 std::optional<limb::GravityModel> fit_sweep(const StageContext& context, const data::Coordinate& coordinate,
@@ -110,20 +121,13 @@ Row run_trial(const StageContext& context, const data::Scene& scene, const data:
               const limb::GravityModel* fitted, const std::string& name, StageOutput& out) {
   const Options& o = *context.options;
   const Record record = read_record(context, coordinate, name);
-  double inertia = 0.0;
-  if (o.text("inertia") == "limb") {
-    inertia =
-        limb::bodies_of(scene, coordinate.name, trial_info(context.input("signals"), name).conditions, name)
-            .inertia_kg_m2() +
-        o.number("machine_arm_inertia_kg_m2");
-  }
   limb::AxisOffset axis;
   axis.along_m = o.number("axis_along_m");
   axis.across_m = o.number("axis_across_m");
   axis.sd_m = o.number("axis_sd_m");
   axis.pad_distance_m = o.number("pad_distance_m");
-  const limb::DynamometerMoment m = limb::dynamometer_moment(
-      record.joint, gravity_model(context, scene, coordinate, fitted, name), inertia, axis);
+  const Loads loads = loads_of(context, scene, coordinate, fitted, name);
+  const limb::DynamometerMoment m = limb::dynamometer_moment(record.joint, loads.limb, loads.machine, axis);
   const Eigen::Index count = m.moment_N_m.size();
 
   std::vector<limb::Phase> phases{{0, count, 0.0, 0.0}};
@@ -150,7 +154,7 @@ Row run_trial(const StageContext& context, const data::Scene& scene, const data:
   out.signals->write(name, make_signal(record.grid, coordinate.name, Quantity::joint_angle, "rad",
                                        coordinate.name, m.angle_rad));
   out.signals->write(name, make_signal(record.grid, coordinate.name + "_velocity", Quantity::joint_velocity,
-                                       "rad/s", coordinate.name, record.joint.velocity_rad_per_s));
+                                       "rad/s", coordinate.name, m.velocity_rad_per_s));
   out.signals->write(name, make_signal(record.grid, "use", Quantity::other, "1", coordinate.name, use));
   out.signals->write(
       name, make_signal(record.grid, "moment_sd", Quantity::other, "N m", coordinate.name, m.sd_N_m));
@@ -237,6 +241,7 @@ std::string methods(const ReportContext& context) {
 void add_limb_dynamometer(Catalogue& catalogue) {
   StageSpec spec;
   spec.name = "limb.dynamometer";
+  spec.version = 2;
   spec.summary = "a dynamometer's record to the muscles' moment: layout, gravity, inertia, axis, ramps";
   spec.doc =
       "Brings a machine's angle, velocity and torque (signals of quantity dynamometer_angle, "

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <fstream>
 #include <numbers>
 
+#include "data/io/session_description.hpp"
 #include "data/limb/bodies.hpp"
 #include "stages_support.hpp"
 
@@ -217,6 +219,81 @@ TEST(DynamometerStage, UndoesSignsAndZerosOfTheMachine) {
   EXPECT_LT(largest_difference(signal(a, "curl", "elbow_flexion_moment").samples,
                                signal(b, "curl", "elbow_flexion_moment").samples),
             1e-9);
+}
+
+/// What an isokinetic machine would write of a trial of the twin: a plain table in its own units, its angle falling with
+/// flexion from 30 deg at the straight joint, its torque in ft lbf, positive towards extension, 1.5 N m off, and its axis
+/// beside the joint's by e = (along, across), with the pad at l.
+std::string machine_table(const StageData& session, const std::string& trial, double along_m, double across_m,
+                          double pad_m) {
+  constexpr double newton_metre_per_ft_lbf = 1.3558179483314004;
+  const std::vector<double> angle = signal(session, trial, "dynamometer_angle").samples,
+                            velocity = signal(session, trial, "dynamometer_velocity").samples,
+                            torque = signal(session, trial, "dynamometer_torque").samples;
+  std::string text = "machine,K12\nTime;Position;Velocity;Torque\ns;deg;deg/s;ft lbf\n";
+  for (std::size_t i = 0; i < angle.size(); ++i) {
+    double q = angle[i];  // of the machine: q_joint = q - (e . t(q)) / l
+    for (int k = 0; k < 50; ++k) q = angle[i] + (-along_m * std::sin(q) + across_m * std::cos(q)) / pad_m;
+    const double factor = 1.0 - (along_m * std::cos(q) + across_m * std::sin(q)) / pad_m;
+    text += fmt::format("{:.3f};{:.9f};{:.9f};{:.9f}\n", static_cast<double>(i) / 200.0, 30.0 - q / deg,
+                        -velocity[i] / (2.0 - factor) / deg,
+                        (1.5 - torque[i] / factor) / newton_metre_per_ft_lbf);
+  }
+  return text;
+}
+
+TEST(DynamometerStage, APlainTableWithADeclaredLayoutGivesTheTwinsMoment) {
+  const StageData twin =
+      run("twin.session",
+          "seed = 5\nraw_emg = false\ndynamometer = true\ntrial = [ { name = \"kick\", programme = "
+          "\"isokinetic\", "
+          "duration_s = 12.0, lower_deg = 20.0, upper_deg = 116.0, effort = 0.8, cycle_s = 4.0 } ]");
+  struct Machine {
+    double along_m, across_m;
+    std::string options;
+  };
+  for (const Machine& machine :
+       {Machine{0.0, 0.0, ""},
+        Machine{0.008, -0.012, "axis_along_m = 0.008\naxis_across_m = -0.012\npad_distance_m = 0.28\n"}}) {
+    const std::filesystem::path folder = brachium::tests::scratch_dir();
+    std::ofstream(folder / "kick.csv")
+        << machine_table(twin, "kick", machine.along_m, machine.across_m, 0.28);
+    std::ofstream(folder / "s.toml")
+        << "[session]\nsubject = \"s\"\n[[trial]]\nname = \"kick\"\nkind = \"test\"\n[[file]]\npath = "
+           "\"kick.csv\"\n"
+           "delimiter = \";\"\nheader_row = 2\nunits_row = 3\ntime = \"Time\"\n"
+           "[[file.signal]]\ncolumn = \"Position\"\nname = \"angle\"\nquantity = \"dynamometer_angle\"\n"
+           "coordinate = \"elbow_flexion\"\n"
+           "[[file.signal]]\ncolumn = \"Velocity\"\nname = \"velocity\"\nquantity = "
+           "\"dynamometer_velocity\"\n"
+           "coordinate = \"elbow_flexion\"\n"
+           "[[file.signal]]\ncolumn = \"Torque\"\nname = \"torque\"\nquantity = \"dynamometer_torque\"\n"
+           "coordinate = \"elbow_flexion\"\n";
+    data::MemorySession recorded;
+    io::import_session(io::read_session_description(folder / "s.toml"), recorded);
+    const StageData session = named(session_data(data::load(recorded)), "recordings");
+    const StageData m =
+        run("limb.dynamometer",
+            "angle_sign = -1\ntorque_sign = -1\nangle_zero_deg = 30\ntorque_zero_N_m = 1.5\n"
+            // At 20 Hz the filter rounds the ramps off: 2.3e-3 N m at the edges of the windows.
+            "lowpass_hz = 40\nwindows = \"isokinetic\"\nspeed_deg_s = 60\n" +
+                machine.options,
+            {{"signals", {&session}}});
+    const std::vector<double> moment = signal(m, "kick", "elbow_flexion_moment").samples,
+                              truth = signal(twin, "kick", "joint_moment").samples,
+                              use = signal(m, "kick", "use").samples;
+    ASSERT_EQ(moment.size(), truth.size());
+    std::size_t used = 0;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < moment.size(); ++i) {
+      if (use[i] < 0.5) continue;  // the machine is getting up to speed
+      ++used;
+      largest = std::max(largest, std::abs(moment[i] - truth[i]));
+    }
+    EXPECT_GT(used, moment.size() / 3) << machine.options;
+    EXPECT_LT(used, moment.size()) << machine.options;
+    EXPECT_LT(largest, 2e-3) << machine.options;
+  }
 }
 
 TEST(DynamometerStage, MarksHoldsAndSaysWhereThereAreNone) {

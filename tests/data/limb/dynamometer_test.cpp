@@ -67,10 +67,11 @@ Machine passive_sweep(double inclination, double noise, double friction) {
 
 TEST(Dynamometer, PassiveSweepGivesTheGravityOfLimbAndMachineArm) {
   const double inclination = 20 * degree;
-  const limb::GravityModel computed = limb::gravity_from_limb(arm(), arm_moment, inclination);
+  const limb::GravityModel of_limb = limb::gravity_from_limb(arm(), inclination),
+                           of_machine = limb::gravity_from_machine_arm(arm_moment, inclination);
   const limb::GravityModel clean = limb::fit_gravity(passive_sweep(inclination, 0.0, 0.0).record(true));
   for (const double q : {10.0, 60.0, 130.0}) {
-    EXPECT_NEAR(computed(q * degree), gravity(q * degree, inclination), 1e-12);
+    EXPECT_NEAR(of_limb(q * degree) + of_machine(q * degree), gravity(q * degree, inclination), 1e-12);
     EXPECT_NEAR(clean(q * degree), gravity(q * degree, inclination), 1e-10);
   }
   EXPECT_LT(clean.rms_residual_N_m, 1e-10);
@@ -110,13 +111,16 @@ struct Isokinetic {
 TEST(Dynamometer, IsokineticMomentIsRecoveredWithInertiaAndTheRampsAreExcluded) {
   const double inclination = 0.1;
   const Isokinetic test(inclination);
-  const limb::GravityModel g = limb::gravity_from_limb(arm(), arm_moment, inclination);
+  const limb::GravityModel of_limb = limb::gravity_from_limb(arm(), inclination),
+                           of_machine = limb::gravity_from_machine_arm(arm_moment, inclination);
   for (const bool measured : {true, false}) {
     const limb::DynamometerRecord record =
         test.machine.record(measured, 20.0);  // a ramp of 0.2 s needs more than 10 Hz
     EXPECT_EQ(record.velocity_measured, measured);
-    const limb::DynamometerMoment with = limb::dynamometer_moment(record, g, test.inertia);
-    const limb::DynamometerMoment without = limb::dynamometer_moment(record, g, 0.0);
+    const limb::DynamometerMoment with = limb::dynamometer_moment(
+        record, {of_limb, arm().inertia_kg_m2()}, {of_machine, test.inertia - arm().inertia_kg_m2()});
+    const limb::DynamometerMoment without =
+        limb::dynamometer_moment(record, {of_limb, 0.0}, {of_machine, 0.0});
     const auto phases = limb::isokinetic_phases(record, {Isokinetic::speed, 0.05, 0.1});
     ASSERT_EQ(phases.size(), 1u);
     EXPECT_NEAR(phases[0].mean, Isokinetic::speed, 0.005);
@@ -186,8 +190,54 @@ TEST(Dynamometer, AxisOffsetIsCorrectedToFirstOrder) {
   const Isokinetic test(0.0);
   const limb::DynamometerRecord record = test.machine.record(true);
   const limb::DynamometerMoment m =
-      limb::dynamometer_moment(record, limb::gravity_from_limb(arm(), arm_moment, 0.0), 0.0, axis);
+      limb::dynamometer_moment(record, {limb::gravity_from_limb(arm(), 0.0)}, {}, axis);
   EXPECT_NEAR(m.sd_N_m(900), 0.005 / 0.28 * std::abs(record.torque_N_m(900)), 1e-12);
+}
+
+TEST(Dynamometer, ALimbBesideTheAxisWeighsAndTurnsAtItsOwnAngleTheMachinesArmAtTheMachines) {
+  // The exact motion of a joint centre e beside the axis, with the pad on the machine's arm at l, up to second order.
+  const double l = 0.30, along = 2e-4, across = -3e-4, inertia = 0.06, machine_inertia = 0.05, muscles = 17.0;
+  const limb::AxisOffset axis{along, across, 0.0, l};
+  const limb::GravityModel of_limb = limb::gravity_from_limb(arm(), 0.0),
+                           of_machine = limb::gravity_from_machine_arm(arm_moment, 0.0);
+  const Eigen::Vector2d e(along, across);
+  const auto machine_angle = [](double t) { return 1.0 + 0.6 * std::sin(2.0 * t); };
+  const auto joint_angle = [&](double t) {
+    const double q = machine_angle(t);
+    const Eigen::Vector2d lever = l * Eigen::Vector2d(std::cos(q), std::sin(q)) - e;
+    return std::atan2(lever(1), lever(0));
+  };
+  const auto second = [](const auto& f, double t) { return (f(t + 1e-4) - 2 * f(t) + f(t - 1e-4)) / 1e-8; };
+  constexpr int n = 40;
+  limb::DynamometerRecord record;
+  record.rate_hz = 50.0;
+  for (VectorXd* v :
+       {&record.angle_rad, &record.velocity_rad_per_s, &record.acceleration_rad_per_s2, &record.torque_N_m})
+    v->resize(n);
+  for (int i = 0; i < n; ++i) {
+    const double t = i / record.rate_hz, q = machine_angle(t), joint = joint_angle(t);
+    const Eigen::Vector2d r(std::cos(q), std::sin(q)), tangent(-r(1), r(0)), lever = l * r - e;
+    // Of the limb: I q'' = M + G(q) - (pad force's moment about the joint); the pad force is normal to the machine's arm.
+    const double about_joint = muscles + of_limb(joint) - inertia * second(joint_angle, t);
+    const double force = about_joint / (lever(0) * tangent(1) - lever(1) * tangent(0));
+    record.angle_rad(i) = q;
+    record.velocity_rad_per_s(i) = 1.2 * std::cos(2.0 * t);
+    record.acceleration_rad_per_s2(i) = -2.4 * std::sin(2.0 * t);
+    record.torque_N_m(i) = l * force + of_machine(q) - machine_inertia * record.acceleration_rad_per_s2(i);
+  }
+  const auto worst = [&](const limb::DynamometerMoment& m) {
+    return (m.moment_N_m.array() - muscles).abs().maxCoeff();
+  };
+  const double offset = std::hypot(along, across) / l;
+  const double right =
+      worst(limb::dynamometer_moment(record, {of_limb, inertia}, {of_machine, machine_inertia}, axis));
+  EXPECT_LT(right, 40.0 * offset * offset);
+  // The whole weight and inertia on the machine's side: wrong to first order.
+  limb::GravityModel both = of_machine;
+  both.cos_N_m += of_limb.cos_N_m;
+  both.sin_N_m += of_limb.sin_N_m;
+  EXPECT_GT(worst(limb::dynamometer_moment(record, {}, {both, machine_inertia + inertia}, axis)),
+            10.0 * right);
 }
 
 std::string message_of(const std::function<void()>& action) {
@@ -222,14 +272,16 @@ TEST(Dynamometer, RefusesRecordsItCannotUse) {
       message_of([&] { limb::fit_gravity(still.record(true), slow); }),
       "too-few-samples: the passive sweep has 0 samples slower than 0.573 deg/s; the gravity fit needs 10");
   const limb::DynamometerRecord record = still.record(true);
-  EXPECT_EQ(message_of([&] { limb::dynamometer_moment(record, {}, -1.0); }),
+  EXPECT_EQ(message_of([&] {
+              limb::dynamometer_moment(record, {{}, -1.0}, {});
+            }),
             "out-of-range: the inertia must be 0 kg m^2 or greater, not -1");
   EXPECT_EQ(message_of([&] {
-              limb::dynamometer_moment(record, {}, 0.0, {0.01, 0.0, 0.0, 0.0});
+              limb::dynamometer_moment(record, {}, {}, {0.01, 0.0, 0.0, 0.0});
             }),
             "missing-key: an axis offset needs the distance from the machine's axis to the pad");
   EXPECT_EQ(message_of([&] {
-              limb::dynamometer_moment(record, {}, 0.0, {0.1, 0.0, 0.0, 0.2});
+              limb::dynamometer_moment(record, {}, {}, {0.1, 0.0, 0.0, 0.2});
             }),
             "out-of-range: the joint lies 100 mm beside the machine's axis, too far for a first-order "
             "correction at a pad distance of 200 mm");
