@@ -12,6 +12,8 @@
 ///   dz_k = (R_theta - Q_a da - Q_w dβ_k)/(f_t'/l_s + Q_z + α Q_w),  dF = S (f_t,theta - f_t'/l_s dz)
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "data/model/error.hpp"
 #include "hill/chain.hpp"
 #include "hill/equilibrium.hpp"
@@ -77,23 +79,27 @@ class Chain {
   void run() {
     const bool corrected = in_.muscle.options().velocity == FibreVelocity::zero_lag;
     const std::size_t n = in_.frames();
-    const bool tangents = !in_.tangents.empty();
     double* z1 = in_.scratch.array(kFirst, n).data();
-    const Linear first(in_.scratch, kLinear, n, in_.wanted());
+    const std::optional<Linear> first = linear(kLinear);
+    sweep(z1, nullptr, nullptr, !corrected, first);
     if (!corrected) {
-      sweep(z1, nullptr, nullptr, true, tangents ? &first : nullptr);
-      for (const Tangent& t : in_.tangents) differentiate(t, first);
+      for (const Tangent& t : in_.tangents) differentiate(t, *first);
       return;
     }
-    sweep(z1, nullptr, nullptr, false, tangents ? &first : nullptr);
     double* shift = in_.scratch.array(kShift, n).data();
     defect(z1, shift);
-    const Linear second(in_.scratch, kLinear + Linear::kArrays, n, in_.wanted());
-    sweep(in_.scratch.array(kSecond, n).data(), z1, shift, true, tangents ? &second : nullptr);
-    for (const Tangent& t : in_.tangents) differentiate_corrected(t, first, second);
+    const std::optional<Linear> second = linear(kLinear + Linear::kArrays);
+    sweep(in_.scratch.array(kSecond, n).data(), z1, shift, true, second);
+    for (const Tangent& t : in_.tangents) differentiate_corrected(t, *first, *second);
   }
 
  private:
+  // Only tangents need it: an hour's trial is long.
+  std::optional<Linear> linear(std::size_t base) const {
+    if (in_.tangents.empty()) return std::nullopt;
+    return Linear(in_.scratch, base, in_.frames(), in_.wanted());
+  }
+
   // w_0 = L'_0: as given, else by differences; a causal chain does not know it and starts from rest.
   static double start_rate(const ChainInput& in) {
     if (in.muscle.options().velocity == FibreVelocity::none) return 0.0;
@@ -122,7 +128,8 @@ class Chain {
     return 3.0 * (z[k - 1] - z[k - 2]) + z[k - 3];
   }
 
-  void sweep(double* z, const double* known, const double* shift, bool last, const Linear* lin) {
+  void sweep(double* z, const double* known, const double* shift, bool last,
+             const std::optional<Linear>& lin) {
     const std::size_t n = in_.frames();
     for (std::size_t k = 0; k < n; ++k) {
       EquilibriumProblem p{in_.L[k], in_.a[k], 0.0, 0.0};
@@ -133,15 +140,15 @@ class Chain {
       const Equilibrium e = solver_.solve(p, guess(k, z, known));
       if (e.kind == Equilibrium::Kind::unconverged) fail(k, e);
       z[k] = e.z;
-      if (!last && lin == nullptr) continue;
+      if (!last && !lin) continue;
       if (e.kind == Equilibrium::Kind::slack) {
         if (last) record_slack(in_.out, k, c_);
-        if (lin != nullptr) linearise_without_root(*lin, k, e.kind, 0.0);
+        if (lin) linearise_without_root(*lin, k, e.kind, 0.0);
         continue;
       }
       const double w = p.alpha * e.z + p.beta;
       // Tangents and parts want everything at z itself; the rest follows from the last iterate.
-      const bool again = lin != nullptr || in_.out.parts || e.kind == Equilibrium::Kind::untaut;
+      const bool again = lin || in_.out.parts || e.kind == Equilibrium::Kind::untaut;
       Projected q = again ? project(set_, c_, e.z, w, p.a) : e.fibres;
       if (!again) q.l += q.c * e.step;
       if (last) {
@@ -151,7 +158,7 @@ class Chain {
         in_.out.status[k] = pushes ? FrameStatus::unloaded : FrameStatus::ok;
         record(in_.out, k, q, q.c * w, c_.with_velocity ? c_.damping : 0.0);
       }
-      if (lin != nullptr) linearise(*lin, k, p, e, q, w);
+      if (lin) linearise(*lin, k, p, e, q, w);
     }
   }
 

@@ -18,8 +18,18 @@ std::array<double, 6> powers(double p0, double q0, double q1, double p1) {
   return {p0, 5.0 * d0, -10.0 * d0, 10.0 * (d0 + d1), -5.0 * d0 - 15.0 * d1, d0 + 6.0 * d1 + d2};
 }
 
-double horner(const std::array<double, 6>& c, double u) {
-  return ((((c[5] * u + c[4]) * u + c[3]) * u + c[2]) * u + c[1]) * u + c[0];
+template <std::size_t n>
+double horner(const std::array<double, n>& c, double u) {
+  double sum = c[n - 1];
+  for (std::size_t i = n - 1; i > 0; --i) sum = sum * u + c[i - 1];
+  return sum;
+}
+
+template <std::size_t n>
+std::array<double, n - 1> slope(const std::array<double, n>& c) {
+  std::array<double, n - 1> out;
+  for (std::size_t i = 1; i < n; ++i) out[i - 1] = static_cast<double>(i) * c[i];
+  return out;
 }
 
 // Root of the increasing polynomial x(u) = at on [0, 1].
@@ -69,10 +79,18 @@ QuinticBezier::QuinticBezier(const std::vector<Knot>& knots, const std::vector<d
     piece.inverse_cell = static_cast<double>(kCells) / (b.x - a.x);
     piece.x = powers(a.x, a.x + cut * (xc - a.x), b.x + cut * (xc - b.x), b.x);
     piece.y = powers(a.y, a.y + cut * (yc - a.y), b.y + cut * (yc - b.y), b.y);
-    for (std::size_t k = 0; k <= kCells; ++k) {
-      piece.guess[k] = bisect(piece.x, a.x + static_cast<double>(k) / piece.inverse_cell);
+    piece.dx = slope(piece.x);
+    piece.dy = slope(piece.y);
+    piece.ddx = slope(piece.dx);
+    double u0 = 0.0;
+    for (std::size_t k = 0; k < kCells; ++k) {
+      const double u1 = bisect(piece.x, a.x + static_cast<double>(k + 1) / piece.inverse_cell);
+      const double d0 = 1.0 / (piece.inverse_cell * horner(piece.dx, u0)),
+                   d1 = 1.0 / (piece.inverse_cell * horner(piece.dx, u1));
+      piece.guess[k] = {u0, d0, 3.0 * (u1 - u0) - 2.0 * d0 - d1, 2.0 * (u0 - u1) + d0 + d1};
+      u0 = u1;
     }
-    piece.guess[kCells + 1] = 1.0;
+    piece.guess[kCells] = {1.0, 0.0, 0.0, 0.0};
     pieces_.push_back(piece);
   }
 }

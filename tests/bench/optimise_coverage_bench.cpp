@@ -1,8 +1,9 @@
 /// Do the stated 95 % intervals cover the truth? The stochastic twin over many seeds: EMG as modulated noise
 /// at 20 dB, conditioned as recordings are, calibrated, judged. Prints coverage, mean error and mean stated
-/// bias per parameter, with and without the correction, and how many intervals each seed misses. Run:
-/// optimise_coverage_bench SCENE_FILE [SEEDS, default 100] [REPLICATES, default 20] [CSV_FILE, one row a seed
-/// and parameter]
+/// bias per parameter, with and without the correction, and how many intervals each seed misses. Exit code 1
+/// if those of any parameter that most seeds call identified cover the truth in less than 90 % of the seeds.
+/// Run: optimise_coverage_bench SCENE_FILE [SEEDS, default 100] [REPLICATES, default 20] [CSV_FILE, one row a
+/// seed and parameter]
 
 #include <fmt/format.h>
 
@@ -68,40 +69,50 @@ int main(int argc, char** argv) {
   const auto seeds = static_cast<std::size_t>(argc > 2 ? std::atoi(argv[2]) : 100);
   const int replicates = argc > 3 ? std::atoi(argv[3]) : 20;
   std::vector<tests::StochasticOutcome> outcomes(seeds);
-  outcomes[0] = tests::stochastic_seed(scene, 1, replicates);
-  data::parallel_for(seeds - 1, 0, [&](std::size_t k) {
-    outcomes[k + 1] = tests::stochastic_seed(scene, k + 2, replicates);
-  });
+  tests::StochasticStudy study;
+  study.replicates = replicates;
+  outcomes[0] = tests::stochastic_seed(scene, 1, study);
+  data::parallel_for(seeds - 1, 0,
+                     [&](std::size_t k) { outcomes[k + 1] = tests::stochastic_seed(scene, k + 2, study); });
 
   if (argc > 4) write_rows(argv[4], outcomes);
-  fmt::print("{:<44} {:>8} {:>9} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "parameter", "truth", "covered",
-             "error", "uncorrected", "stated bias", "error sd", "stated se");
-  std::size_t covered_all = 0, total = 0, seeds_covered[2] = {0, 0};
+  fmt::print("{:<44} {:>8} {:>10} {:>8} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "parameter", "truth",
+             "identified", "covered", "error", "uncorrected", "stated bias", "error sd", "stated se");
+  std::size_t covered_all = 0, total = 0, reached = 0;
+  std::vector<std::string> missed;
   const auto& parameters = outcomes[0].result.parameters;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     double error = 0.0, square = 0.0, raw = 0.0, bias = 0.0, se = 0.0;
-    std::size_t covered = 0;
+    std::size_t covered = 0, identified = 0;
     for (const auto& o : outcomes) {
       const auto& v = o.result.subject.verdicts[j];
       covered += covers(o, j) ? 1 : 0;
+      identified += v.verdict == "identified" ? 1 : 0;
       square += std::pow(v.fitted - o.truth[i], 2) / static_cast<double>(seeds);
       error += (v.fitted - o.truth[i]) / static_cast<double>(seeds);
       raw += (o.result.x_uncorrected[i] - o.truth[i]) / static_cast<double>(seeds);
       bias += v.bias / static_cast<double>(seeds);
       se += v.standard_error / static_cast<double>(seeds);
     }
-    fmt::print("{:<44} {:>8.4g} {:>8.1f}% {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e}\n",
-               parameters[j].label(), outcomes[0].truth[i],
-               100.0 * static_cast<double>(covered) / static_cast<double>(seeds), error, raw, bias,
-               std::sqrt(square - error * error), se);
+    const auto percent = [seeds](std::size_t n) {
+      return 100.0 * static_cast<double>(n) / static_cast<double>(seeds);
+    };
+    fmt::print("{:<44} {:>8.4g} {:>9.1f}% {:>7.1f}% {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e} {:>11.2e}\n",
+               parameters[j].label(), outcomes[0].truth[i], percent(identified), percent(covered), error, raw,
+               bias, std::sqrt(square - error * error), se);
     covered_all += covered;
     total += seeds;
-    ++seeds_covered[10 * covered >= 9 * seeds ? 0 : 1];
+    if (10 * covered >= 9 * seeds) {
+      ++reached;
+    } else if (2 * identified > seeds) {
+      missed.push_back(parameters[j].label());
+    }
   }
-  fmt::print("all: {:.1f} % of {} intervals cover the truth; {} parameters reach 90 %, {} do not\n",
-             100.0 * static_cast<double>(covered_all) / static_cast<double>(total), total, seeds_covered[0],
-             seeds_covered[1]);
+  fmt::print("all: {:.1f} % of {} intervals cover the truth; {} of {} parameters reach 90 %\n",
+             100.0 * static_cast<double>(covered_all) / static_cast<double>(total), total, reached,
+             parameters.size());
   print_misses(outcomes);
-  return 10 * covered_all >= 9 * total ? 0 : 1;
+  for (const std::string& name : missed) fmt::print(stderr, "below 90 %: {}\n", name);
+  return missed.empty() ? 0 : 1;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "data/model/error.hpp"
 #include "tests/hill/finite_difference.hpp"
@@ -120,27 +121,62 @@ TEST(Millard2012Curves, SolveTheirQuinticToRounding) {
   }
 }
 
-TEST(Millard2012Curves, EqualABezierCurveDrawnByDeCasteljau) {
-  // The passive curve's second piece, drawn point by point from its control points.
-  const Millard2012::Parameters p;
-  const double foot = 0.1 / p.passive_stiffness_at_one_force;  // 0.035
-  const double x0 = 1.0 + foot, y0 = 0.5 * foot * 0.2, s0 = 0.2, x1 = 1.7, y1 = 1.0, s1 = 2.0 / 0.7;
-  const double xc = (y1 - y0 - x1 * s1 + x0 * s0) / (s0 - s1), yc = y0 + s0 * (xc - x0),
-               cut = 0.1 + 0.8 * 0.75;
-  const double qx0 = x0 + cut * (xc - x0), qy0 = y0 + cut * (yc - y0), qx1 = x1 + cut * (xc - x1),
-               qy1 = y1 + cut * (yc - y1);
-  const auto casteljau = [](std::array<double, 6> b, double u) {
-    for (int level = 5; level > 0; --level) {
-      for (int j = 0; j < level; ++j) b[j] += u * (b[j + 1] - b[j]);
+// One piece drawn point by point from its control points; the largest errors of value and slope.
+struct Drawn {
+  double value = 0.0, slope = 0.0;
+};
+template <class Curve>
+Drawn error_against_casteljau(const QuinticBezier::Knot& a, const QuinticBezier::Knot& b, double curviness,
+                              const Curve& curve) {
+  const double xc = (b.y - a.y - b.x * b.slope + a.x * a.slope) / (a.slope - b.slope),
+               yc = a.y + a.slope * (xc - a.x), cut = 0.1 + 0.8 * curviness;
+  const auto towards = [cut](double end, double corner) { return end + cut * (corner - end); };
+  const std::array<double, 6>
+      px = {a.x, towards(a.x, xc), towards(a.x, xc), towards(b.x, xc), towards(b.x, xc), b.x},
+      py = {a.y, towards(a.y, yc), towards(a.y, yc), towards(b.y, yc), towards(b.y, yc), b.y};
+  // The point and, five times the last difference, its rate.
+  const auto casteljau = [](std::array<double, 6> p, double u) {
+    for (int level = 5; level > 1; --level) {
+      for (int j = 0; j < level; ++j) p[j] += u * (p[j + 1] - p[j]);
     }
-    return b[0];
+    return std::pair{p[0] + u * (p[1] - p[0]), 5.0 * (p[1] - p[0])};
   };
-  const Millard2012 set;
-  for (double u = 0.0; u <= 1.0; u += 0.01) {
-    const double x = casteljau({x0, qx0, qx0, qx1, qx1, x1}, u),
-                 y = casteljau({y0, qy0, qy0, qy1, qy1, y1}, u);
-    EXPECT_NEAR(set.passive(x).value, y, 1e-13) << u;
+  Drawn worst;
+  for (int i = 0; i <= 3000; ++i) {
+    const auto [x, dx] = casteljau(px, i / 3000.0);
+    const auto [y, dy] = casteljau(py, i / 3000.0);
+    const data::CurveValue v = curve(x);
+    worst.value = std::max(worst.value, std::abs(v.value - y));
+    worst.slope = std::max(worst.slope, std::abs(v.slope - dy / dx));
   }
+  return worst;
+}
+
+TEST(Millard2012Curves, EqualBezierCurvesDrawnByDeCasteljau) {
+  const Millard2012 set;
+  // Rounding in x shows in y multiplied by the slope.
+  const auto hold = [](const Drawn& error, const char* what, double steepest = 1.0) {
+    EXPECT_LT(error.value, 1e-14 * steepest) << what;
+    EXPECT_LT(error.slope, 1e-12 * steepest) << what;
+  };
+  const double foot = 0.1 * 0.7 / 2.0;
+  hold(error_against_casteljau({1.0 + foot, 0.1 * foot, 0.2}, {1.7, 1.0, 2.0 / 0.7}, 0.75,
+                               [&](double x) { return set.passive(x); }),
+       "passive");
+  // The sharpest corners there are.
+  const double descent = -1.0 / (1.8123 - 1.0 - 2.0 * 0.0259);
+  hold(error_against_casteljau({1.0, 1.0, 0.0}, {0.5 * 2.8123, 0.5, descent}, 1.0,
+                               [&](double x) { return set.active(x); }),
+       "active, descending");
+  const auto velocity = [&](double v) {
+    const VelocityValue f = set.velocity(v, 1.0);
+    return data::CurveValue{f.value, f.slope};
+  };
+  hold(error_against_casteljau({-0.9, 0.0125, 0.25}, {0.0, 1.0, 5.0}, 0.6, velocity), "shortening");
+  hold(error_against_casteljau({0.0, 1.0, 5.0}, {0.9, 1.4 - 0.0075, 0.15}, 0.9, velocity), "lengthening");
+  // And one that no muscle has: the guess is a hundred times worse there.
+  const QuinticBezier sharp({{0.0, 0.0, 0.0}, {1.0, 2.0, 100.0}}, 1.0);
+  hold(error_against_casteljau({0.0, 0.0, 0.0}, {1.0, 2.0, 100.0}, 1.0, sharp), "sharp", 100.0);
 }
 
 TEST(Lloyd2003Curves, PassThroughTheirPoints) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "data/model/error.hpp"
 #include "elbow_study.hpp"
@@ -19,8 +20,9 @@ std::vector<CalibrationTrial> trials(const TwinOptions& options = exact_options(
   return noise_free_trials(make_twin(elbow(), options), "elbow_flexion");
 }
 
-CalibrationProblemOptions everything_free(bool recursive = false) {
+CalibrationProblemOptions everything_free(const ModelChoice& model = {}) {
   CalibrationProblemOptions options;
+  options.model = model;
   options.free = {free(Quantity::strength, Scope::group),
                   free(Quantity::optimal_fibre_length),
                   free(Quantity::tendon_slack_length),
@@ -28,15 +30,16 @@ CalibrationProblemOptions everything_free(bool recursive = false) {
                   free(Quantity::delay),
                   free(Quantity::shape),
                   free(Quantity::gain)};
+  if (model.activation.nonlinearity == emg::Nonlinearity::piecewise) {
+    options.free[5].lower = 0.005;
+    options.free[5].upper = 0.115;
+  }
+  const bool recursive = model.activation.form == emg::ActivationForm::recursive;
   options.free.push_back(free(recursive ? Quantity::recursion_1 : Quantity::time_constant_1, Scope::group));
   options.free.push_back(free(recursive ? Quantity::recursion_2 : Quantity::time_constant_2, Scope::global));
   FreeQuantity pennation = free(Quantity::pennation, Scope::group);
   pennation.only = {"triceps"};
   options.free.push_back(pennation);
-  if (recursive) {
-    options.model.activation.form = emg::ActivationForm::recursive;
-    options.model.recursion_rate_hz = 200.0;
-  }
   return options;
 }
 
@@ -49,20 +52,40 @@ std::string error_of(const std::function<void()>& task) {
   return "accepted";
 }
 
-struct Case {
-  const char* name;
-  hill::TendonKind tendon;
-  bool recursive;
-};
+/// Biceps and triceps above the node of the piecewise nonlinearity, the others below it: its curvature jumps there, and a
+/// difference across it is no derivative.
+std::vector<CalibrationTrial> on_both_pieces(std::vector<CalibrationTrial> trials) {
+  for (CalibrationTrial& trial : trials) {
+    double phase = 0.0;
+    for (data::Signal& e : trial.excitations) {
+      const bool above = e.info.name.starts_with("biceps") || e.info.name.starts_with("triceps");
+      phase += 1.0;
+      for (std::size_t k = 0; k < e.samples.size(); ++k)
+        e.samples[k] = (above ? 0.65 : 0.12) * (1.0 + 0.3 * std::sin(0.03 * static_cast<double>(k) + phase));
+    }
+  }
+  return trials;
+}
+
+using Case = std::tuple<hill::TendonKind, hill::FibreVelocity, emg::ActivationForm, emg::Nonlinearity>;
 class WholeChain : public ::testing::TestWithParam<Case> {};
 
 TEST_P(WholeChain, HasExactDerivativesInEveryParameter) {
-  CalibrationProblemOptions options = everything_free(GetParam().recursive);
-  options.model.tendon = GetParam().tendon;
-  options.decimate = 7;
+  ModelChoice model;
   // A curve set without corners: differences across the knots of a piecewise cubic are no derivative.
-  options.model.curves = "degroote_fregly_2016";
-  const CalibrationProblem problem(elbow(), trials(), options);
+  model.curves = "degroote_fregly_2016";
+  std::tie(model.tendon, model.fibre_velocity, model.activation.form, model.activation.nonlinearity) =
+      GetParam();
+  if (model.activation.form == emg::ActivationForm::recursive) model.recursion_rate_hz = 200.0;
+  data::Scene scene = elbow();
+  std::vector<CalibrationTrial> data = trials();
+  if (model.activation.nonlinearity == emg::Nonlinearity::piecewise) {
+    for (data::SceneMuscle& m : scene.muscles) m.activation.shape = 0.06;
+    data = on_both_pieces(std::move(data));
+  }
+  CalibrationProblemOptions options = everything_free(model);
+  options.decimate = 7;
+  const CalibrationProblem problem(scene, data, options);
   Eigen::VectorXd x = start_of(problem.parameters());
   const Eigen::VectorXd lower = lower_of(problem.parameters()), upper = upper_of(problem.parameters());
   for (Eigen::Index j = 0; j < x.size(); ++j)
@@ -75,11 +98,18 @@ TEST_P(WholeChain, HasExactDerivativesInEveryParameter) {
   EXPECT_TRUE(check.passed) << check.text();
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, WholeChain,
-                         ::testing::Values(Case{"rigid", hill::TendonKind::rigid, false},
-                                           Case{"elastic", hill::TendonKind::elastic, false},
-                                           Case{"rigid_recursive", hill::TendonKind::rigid, true}),
-                         [](const auto& one) { return one.param.name; });
+std::string name_of(const ::testing::TestParamInfo<Case>& test) {
+  const auto& [tendon, velocity, form, nonlinearity] = test.param;
+  return hill::to_string(tendon) + "_" + hill::to_string(velocity) + "_" + to_string(form) + "_" +
+         emg::to_string(nonlinearity);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Models, WholeChain,
+    ::testing::Combine(::testing::Values(hill::TendonKind::rigid, hill::TendonKind::elastic),
+                       ::testing::Values(hill::FibreVelocity::zero_lag, hill::FibreVelocity::causal),
+                       ::testing::Values(emg::ActivationForm::continuous, emg::ActivationForm::recursive),
+                       ::testing::Values(emg::Nonlinearity::exponential, emg::Nonlinearity::piecewise)),
+    name_of);
 
 TEST(CalibrationProblem, ResidualsVanishAtTheTruth) {
   const CalibrationProblem problem(elbow(), trials(), everything_free());

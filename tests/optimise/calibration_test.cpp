@@ -7,7 +7,6 @@
 #include "data/model/error.hpp"
 #include "elbow_study.hpp"
 #include "optimise/cross_validation.hpp"
-#include "stochastic_twin.hpp"
 
 namespace brachium::optimise {
 namespace {
@@ -15,59 +14,9 @@ namespace {
 using tests::disturbed;
 using tests::elbow;
 using tests::exact_options;
+using tests::exact_trials;
 using tests::free;
-
-std::vector<CalibrationTrial> exact_trials(const TwinOptions& options = exact_options()) {
-  return noise_free_trials(make_twin(elbow(), options), "elbow_flexion");
-}
-
-const data::ParameterVerdict& verdict(const data::Subject& subject, const std::string& owner,
-                                      const std::string& parameter) {
-  for (const auto& v : subject.verdicts)
-    if (v.muscle == owner && v.parameter == parameter) return v;
-  throw std::out_of_range(owner + " " + parameter);
-}
-
-class NoiseFreeTwin : public ::testing::TestWithParam<hill::TendonKind> {};
-
-TEST_P(NoiseFreeTwin, GivesEveryIdentifiableParameterToAMillionth) {
-  TwinOptions twin = exact_options();
-  twin.model.tendon = GetParam();
-  CalibrationOptions options;
-  options.problem.model.tendon = GetParam();
-  options.problem.free = {free(Quantity::strength, Scope::group),
-                          free(Quantity::tendon_slack_length),
-                          free(Quantity::optimal_fibre_length),
-                          free(Quantity::delay, Scope::global),
-                          free(Quantity::time_constant_1, Scope::global),
-                          free(Quantity::time_constant_2, Scope::global),
-                          free(Quantity::shape, Scope::global)};
-  options.problem.decimate = 2;
-  const CalibrationResult result = calibrate(disturbed(elbow()), exact_trials(twin), options);
-  EXPECT_TRUE(result.summary.converged) << result.summary.message();
-  const data::Scene truth = elbow();
-  for (const data::SubjectMuscle& m : result.subject.muscles) {
-    const data::SceneMuscle& t = truth.muscle(m.name);
-    const auto close = [&](double fitted, double exact, const char* what) {
-      EXPECT_NEAR(fitted / exact, 1.0, 1e-6) << m.name << " " << what << "\n" << result.summary.message();
-    };
-    close(m.parameters.strength, t.parameters.strength, "strength");
-    close(m.parameters.tendon_slack_length_m, t.parameters.tendon_slack_length_m, "tendon slack length");
-    close(m.parameters.optimal_fibre_length_m, t.parameters.optimal_fibre_length_m, "optimal fibre length");
-    close(m.activation.delay_s, t.activation.delay_s, "delay");
-    close(m.activation.time_constant_1_s, t.activation.time_constant_1_s, "first time constant");
-    close(m.activation.time_constant_2_s, t.activation.time_constant_2_s, "second time constant");
-    close(m.activation.shape, t.activation.shape, "shape");
-  }
-  EXPECT_LT(result.pooled.rmse, 1e-6);
-  const std::string remark = verdict(result.subject, "*", "time_constant_1_s").remark;
-  EXPECT_NE(remark.find("interchangeable with time_constant_2_s: the pair is determined, not which is which"),
-            std::string::npos);
-}
-
-INSTANTIATE_TEST_SUITE_P(Tendons, NoiseFreeTwin,
-                         ::testing::Values(hill::TendonKind::rigid, hill::TendonKind::elastic),
-                         [](const auto& one) { return hill::to_string(one.param); });
+using tests::verdict;
 
 TEST(Calibration, LinearStrengthFitAloneFindsTheStrengths) {
   data::Scene start = elbow();
@@ -197,32 +146,6 @@ TEST(Calibration, SubjectPredictsWhatTheCalibrationModelled) {
   const Prediction p = predict(elbow(), result.subject, trials[1], options.problem);
   const Metrics m = metrics(p.reference_N_m, p.modelled_N_m);
   EXPECT_NEAR(m.rmse, result.trial_metrics[1].rmse, 1e-12);
-}
-
-// The stated 95 % intervals cover the truth in at least 90 % of seeds: 10 here, 100 in the benchmark.
-TEST(StochasticTwin, IntervalsCoverTheTruthOverTenSeeds) {
-  const data::Scene scene = elbow();
-  int covered = 0, total = 0;
-  double error = 0.0, uncorrected = 0.0, stated = 0.0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const tests::StochasticOutcome out = tests::stochastic_seed(scene, seed, 6);
-    for (std::size_t j = 0; j < out.result.subject.verdicts.size(); ++j) {
-      const auto& v = out.result.subject.verdicts[j];
-      const double truth = out.truth[static_cast<Eigen::Index>(j)];
-      ++total;
-      covered += v.interval_lower <= truth && truth <= v.interval_upper ? 1 : 0;
-      if (v.muscle == "biceps" && v.parameter == "strength") {
-        error += (v.fitted - truth) / 10.0;
-        uncorrected += (out.result.x_uncorrected[static_cast<Eigen::Index>(j)] - truth) / 10.0;
-        stated += v.bias / 10.0;
-      }
-    }
-  }
-  EXPECT_GE(covered, static_cast<int>(0.9 * total)) << covered << " of " << total;
-  // Least squares are off by a fifth; most of it is stated, and taken off.
-  EXPECT_LT(uncorrected, -0.15);
-  EXPECT_LT(stated, -0.10);
-  EXPECT_LT(std::abs(error), 0.5 * std::abs(uncorrected));
 }
 
 }  // namespace

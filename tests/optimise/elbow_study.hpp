@@ -1,6 +1,8 @@
 #pragma once
 /// The shipped synthetic elbow and sessions made from it.
 
+#include <stdexcept>
+
 #include "data/io/scene_file.hpp"
 #include "optimise/calibration.hpp"
 #include "optimise/twin.hpp"
@@ -33,11 +35,22 @@ inline TwinOptions exact_options(double duration = 8.0) {
   return options;
 }
 
+inline std::vector<CalibrationTrial> exact_trials(const TwinOptions& options = exact_options()) {
+  return noise_free_trials(make_twin(elbow(), options), "elbow_flexion");
+}
+
 inline FreeQuantity free(Quantity quantity, Scope scope = Scope::each) {
   FreeQuantity f;
   f.quantity = quantity;
   f.scope = scope;
   return f;
+}
+
+inline const data::ParameterVerdict& verdict(const data::Subject& subject, const std::string& owner,
+                                             const std::string& parameter) {
+  for (const auto& v : subject.verdicts)
+    if (v.muscle == owner && v.parameter == parameter) return v;
+  throw std::out_of_range(owner + " " + parameter);
 }
 
 /// The scene with every value that a calibration may free moved away from the truth, inside the default

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "emg/random.hpp"
+#include "optimise/solve.hpp"
 #include "toy_problems.hpp"
 
 namespace brachium::optimise {
@@ -39,26 +40,94 @@ VectorXd noise(Eigen::Index m, double rho, std::uint64_t seed) {
   return out;
 }
 
-TEST(Statistics, OfUncorrelatedResidualsMatchTheClassicalCovarianceOfGsl) {
+/// (J'J)^-1 as GSL has it.
+MatrixXd gsl_covariance(const MatrixXd& J) {
+  const auto m = static_cast<std::size_t>(J.rows()), n = static_cast<std::size_t>(J.cols());
+  gsl_matrix *rows = gsl_matrix_alloc(m, n), *out = gsl_matrix_alloc(n, n);
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      gsl_matrix_set(rows, i, j, J(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+  gsl_multifit_nlinear_covar(rows, 0.0, out);
+  MatrixXd C(J.cols(), J.cols());
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      C(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = gsl_matrix_get(out, i, j);
+  gsl_matrix_free(rows);
+  gsl_matrix_free(out);
+  return C;
+}
+
+TEST(Statistics, GslsCovarianceOfALineIsTheTextbooks) {
+  // var b = 1/Sxx, var a = 1/m + mean^2/Sxx, cov(a, b) = -mean/Sxx, in units of the residuals' variance.
+  const VectorXd t = VectorXd::LinSpaced(50, 2.0, 9.0).array().square();
+  MatrixXd J(50, 2);
+  J << VectorXd::Ones(50), t;
+  const double mean = t.mean(), Sxx = (t.array() - mean).square().sum();
+  const MatrixXd C = gsl_covariance(J);
+  EXPECT_NEAR(C(1, 1) * Sxx, 1.0, 1e-10);
+  EXPECT_NEAR(C(0, 0) / (1.0 / 50.0 + mean * mean / Sxx), 1.0, 1e-10);
+  EXPECT_NEAR(-C(0, 1) * Sxx / mean, 1.0, 1e-10);
+}
+
+TEST(Statistics, OfResidualsOfOneSizeInBlocksOfOneAreGslsCovariance) {
+  // Nothing to correlate, and the sandwich is s^2 J'J: what is left is the classical covariance.
+  const Line line(400);
+  VectorXd r = VectorXd::Constant(400, 0.3);
+  for (Eigen::Index i = 0; i < 400; i += 3) r[i] = -0.3;
+  std::vector<ResidualBlock> blocks;
+  for (std::size_t i = 0; i < 400; ++i) blocks.push_back({"one", i, 1});
+  const FitStatistics s = fit_statistics(line.parameters, line.truth, r, line.J, blocks);
+  const MatrixXd C = gsl_covariance(line.J) * (s.residual_sd * s.residual_sd * 400.0 / 398.0);
+  for (Eigen::Index i = 0; i < 2; ++i)
+    for (Eigen::Index j = 0; j < 2; ++j)
+      EXPECT_NEAR(s.covariance(i, j), C(i, j), 1e-10 * std::sqrt(C(i, i) * C(j, j)));
+}
+
+TEST(Statistics, OfNistsMisra1aAreTheCertifiedOnes) {
+  // https://www.itl.nist.gov/div898/strd/nls/data/misra1a.shtml, y = b1 (1 - exp(-b2 x)): values certified to 11 digits.
+  const VectorXd x{
+      {77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0}};
+  const VectorXd y{
+      {10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78}};
+  const auto evaluate = [&](const VectorXd& b, VectorXd& r, MatrixXd* J) {
+    const VectorXd e = (-b[1] * x.array()).exp();
+    r = b[0] * (1.0 - e.array()) - y.array();
+    if (!J) return;
+    J->resize(14, 2);
+    J->col(0) = 1.0 - e.array();
+    J->col(1) = b[0] * x.array() * e.array();
+  };
+  const tests::ToyProblem problem(
+      {toy_parameter("b1", 250.0, 100.0, 600.0), toy_parameter("b2", 5e-4, 5e-5, 2e-3)}, 14, evaluate);
+  for (const Solver solver : {Solver::levenberg_marquardt, Solver::gsl_levenberg_marquardt}) {
+    SolveOptions options;
+    options.solver = solver;
+    options.max_iterations = 1000;
+    const Summary summary = solve(problem, options);
+    VectorXd r;
+    MatrixXd J;
+    evaluate(summary.x, r, &J);
+    const double variance = r.squaredNorm() / 12.0;
+    const MatrixXd C = gsl_covariance(J) * variance;
+    EXPECT_NEAR(summary.x[0] / 2.3894212918e+02, 1.0, 1e-10) << to_string(solver);
+    EXPECT_NEAR(summary.x[1] / 5.5015643181e-04, 1.0, 1e-10) << to_string(solver);
+    EXPECT_NEAR(std::sqrt(variance) / 1.0187876330e-01, 1.0, 1e-10) << to_string(solver);
+    EXPECT_NEAR(std::sqrt(C(0, 0)) / 2.7070075241e+00, 1.0, 1e-10) << to_string(solver);
+    EXPECT_NEAR(std::sqrt(C(1, 1)) / 7.2668688436e-06, 1.0, 1e-10) << to_string(solver);
+  }
+}
+
+TEST(Statistics, OfUncorrelatedResidualsAreCloseToTheClassicalOnes) {
   const Line line(4000);
   const VectorXd y = line.J * line.truth + noise(4000, 0.0, 3);
   const VectorXd x = line.J.colPivHouseholderQr().solve(y), r = line.J * x - y;
   const FitStatistics s = fit_statistics(line.parameters, x, r, line.J, {{"all", 0, 4000}});
-  gsl_matrix* J = gsl_matrix_alloc(4000, 2);
-  for (std::size_t i = 0; i < 4000; ++i)
-    for (std::size_t j = 0; j < 2; ++j)
-      gsl_matrix_set(J, i, j, line.J(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
-  gsl_matrix* C = gsl_matrix_alloc(2, 2);
-  gsl_multifit_nlinear_covar(J, 0.0, C);
+  const MatrixXd C = gsl_covariance(line.J);
   for (Eigen::Index j = 0; j < 2; ++j) {
-    const double classical =
-        std::sqrt(gsl_matrix_get(C, static_cast<std::size_t>(j), static_cast<std::size_t>(j))) *
-        s.residual_sd;
+    const double classical = std::sqrt(C(j, j)) * s.residual_sd;
     EXPECT_NEAR(s.standard_error[j], classical, 0.12 * classical);
   }
   EXPECT_NEAR(s.inflation, 1.0, 0.1);
-  gsl_matrix_free(J);
-  gsl_matrix_free(C);
 }
 
 TEST(Statistics, IntervalsCoverTheTruthUnderAutocorrelatedNoise) {

@@ -111,21 +111,38 @@ struct StochasticOutcome {
   Eigen::VectorXd truth;
 };
 
-/// Strength and slack-length factor by group, one delay, one shape; three random trials and ramps, known
-/// maximum, 20 dB, 0.3 N m of noise in the reference.
-inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t seed, int replicates,
-                                         bool correct = true) {
+inline FreeQuantity free_quantity(Quantity quantity, Scope scope) {
+  FreeQuantity f;
+  f.quantity = quantity;
+  f.scope = scope;
+  return f;
+}
+
+struct StochasticStudy {
+  std::vector<FreeQuantity> free = {free_quantity(Quantity::strength, Scope::group),
+                                    free_quantity(Quantity::tendon_slack_length, Scope::group),
+                                    free_quantity(Quantity::delay, Scope::global),
+                                    free_quantity(Quantity::shape, Scope::global)};
+  ModelChoice model;
+  double duration_s = 15.0;  ///< of each trial
+  int replicates = 20;
+};
+
+/// Three random trials and ramps, known maximum, 20 dB, 0.3 N m of noise in the reference.
+inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t seed,
+                                         const StochasticStudy& study) {
   TwinOptions options;
   options.seed = seed;
   options.raw_emg = false;
   options.moment_noise_sd_N_m = 0.3;
+  options.model = study.model;
   for (const auto& [name, programme, angle] :
        {std::tuple{"random-1", Programme::random, 0.0}, std::tuple{"random-2", Programme::random, 0.0},
         std::tuple{"random-3", Programme::random, 0.0}, std::tuple{"ramp", Programme::isometric_ramp, 1.2}}) {
     TwinTrial t;
     t.name = name;
     t.programme = programme;
-    t.duration_s = 15.0;
+    t.duration_s = study.duration_s;
     t.lower_rad = angle > 0.0 ? angle : 0.35;
     t.upper_rad = angle > 0.0 ? angle : 2.1;
     t.effort = 0.7;
@@ -140,19 +157,12 @@ inline StochasticOutcome stochastic_seed(const data::Scene& scene, std::uint64_t
     trials[t].excitations = stochastic_envelopes(twin.truth.trials[t], electrode, seed, t + 1, 100.0);
 
   CalibrationOptions calibration;
-  for (const auto& [quantity, scope] :
-       {std::pair{Quantity::strength, Scope::group}, std::pair{Quantity::tendon_slack_length, Scope::group},
-        std::pair{Quantity::delay, Scope::global}, std::pair{Quantity::shape, Scope::global}}) {
-    FreeQuantity f;
-    f.quantity = quantity;
-    f.scope = scope;
-    calibration.problem.free.push_back(f);
-  }
+  calibration.problem.free = study.free;
+  calibration.problem.model = study.model;
   calibration.problem.edge_s = 0.25;
   calibration.problem.decimate = 2;
   calibration.excitation_noise = stochastic_noise(electrode);
-  calibration.excitation_noise.replicates = replicates;
-  calibration.correct_bias = correct;
+  calibration.excitation_noise.replicates = study.replicates;
   StochasticOutcome out;
   out.result = calibrate(scene, trials, calibration);
   out.truth = start_of(out.result.parameters);  // the scene is the truth
