@@ -65,6 +65,58 @@ TEST(Twin, ExcitationsStayInRangeAndTheMvcReachesOne) {
   }
 }
 
+// In a ramp of flexors, then of extensors: the antagonists' excitation is the level's share of the agonists'.
+TEST(Twin, AntagonistsFollowAtTheLevelOfCocontraction) {
+  TwinOptions options = every_programme();
+  options.trials = {plan("ramp", Programme::isometric_ramp, 8.0, 0.8)};
+  options.independence = 0.0;
+  double before_net = 1e300, before_force = 0.0;
+  for (const double level : {0.0, 0.1, 0.35, 1.0}) {
+    options.cocontraction = level;
+    const Twin twin = make_twin(tests::elbow(), options);
+    const data::Trial& trial = twin.truth.trials[0];
+    const auto &flexor = trial.signal("biceps").samples, &extensor = trial.signal("triceps_long").samples;
+    const std::size_t plateau = 3 * flexor.size() / 10, later = 29 * flexor.size() / 40;
+    EXPECT_NEAR(flexor[plateau], 0.8, 1e-12);
+    EXPECT_NEAR(extensor[plateau], level * 0.8, 1e-12);
+    EXPECT_NEAR(extensor[later], 0.8, 1e-12);
+    EXPECT_NEAR(flexor[later], level * 0.8, 1e-12);
+    // More force in all muscles together, less of it as a moment.
+    double net = trial.signal("joint_moment").samples[plateau], force = 0.0;
+    for (const data::Signal& s : trial.signals)
+      if (s.info.quantity == data::Quantity::muscle_force) force += s.samples[plateau];
+    EXPECT_LT(net, before_net) << level;
+    EXPECT_GT(force, before_force) << level;
+    before_net = net;
+    before_force = force;
+  }
+}
+
+TEST(Twin, IsRecoveredAtEveryLevelOfCocontraction) {
+  for (const double level : {0.0, 0.35, 1.0}) {
+    TwinOptions options = tests::exact_options(6.0);
+    options.cocontraction = level;
+    CalibrationOptions calibration;
+    calibration.problem.free = {
+        tests::free(Quantity::strength, Scope::group), tests::free(Quantity::tendon_slack_length),
+        tests::free(Quantity::delay, Scope::global), tests::free(Quantity::shape, Scope::global)};
+    calibration.problem.decimate = 4;
+    data::Scene start = tests::disturbed(tests::elbow());
+    for (data::SceneMuscle& m : start.muscles) {
+      const data::SceneMuscle truth = tests::elbow().muscle(m.name);
+      m.parameters.optimal_fibre_length_m = truth.parameters.optimal_fibre_length_m;
+      m.activation.time_constant_1_s = truth.activation.time_constant_1_s;
+      m.activation.time_constant_2_s = truth.activation.time_constant_2_s;
+    }
+    const CalibrationResult result = calibrate(start, tests::exact_trials(options), calibration);
+    const Eigen::VectorXd truth = start_of(
+        CalibrationProblem(tests::elbow(), tests::exact_trials(options), calibration.problem).parameters());
+    for (Eigen::Index j = 0; j < truth.size(); ++j)
+      EXPECT_NEAR(result.x[j], truth[j], 1e-6 * std::abs(truth[j]))
+          << level << ": " << result.parameters[static_cast<std::size_t>(j)].label();
+  }
+}
+
 TEST(Twin, MomentIsTheSumOfTheMusclesShares) {
   const Twin twin = make_twin(tests::elbow(), every_programme());
   const data::Trial& trial = twin.truth.trial("curl");
