@@ -1,5 +1,6 @@
 #include "optimise/statistics.hpp"
 
+#include <fmt/format.h>
 #include <gsl/gsl_multifit_nlinear.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 
 #include "emg/random.hpp"
 #include "optimise/solve.hpp"
+#include "optimise/verdicts.hpp"
 #include "toy_problems.hpp"
 
 namespace brachium::optimise {
@@ -67,6 +69,40 @@ TEST(Statistics, GslsCovarianceOfALineIsTheTextbooks) {
   EXPECT_NEAR(C(1, 1) * Sxx, 1.0, 1e-10);
   EXPECT_NEAR(C(0, 0) / (1.0 / 50.0 + mean * mean / Sxx), 1.0, 1e-10);
   EXPECT_NEAR(-C(0, 1) * Sxx / mean, 1.0, 1e-10);
+}
+
+TEST(Statistics, CorrelationsAboveTheLimitAreNamedInBothVerdicts) {
+  // Of level and slope: -mean / sqrt(mean^2 + Sxx / m); -0.998 far from the origin, -0.866 beside it.
+  const Line line(400);
+  const VectorXd r = VectorXd::Constant(400, 0.3);
+  std::vector<ResidualBlock> blocks;
+  for (std::size_t i = 0; i < 400; ++i) blocks.push_back({"one", i, 1});
+  for (const double from : {5.0, 0.0}) {
+    const VectorXd t = VectorXd::LinSpaced(400, from, from + 1.0);
+    MatrixXd J(400, 2);
+    J << VectorXd::Ones(400), t;
+    const double mean = t.mean(), Sxx = (t.array() - mean).square().sum();
+    const FitStatistics s = fit_statistics(line.parameters, line.truth, r, J, blocks);
+    const double expected = -mean / std::sqrt(mean * mean + Sxx / 400.0);
+    if (from == 0.0) {
+      EXPECT_GT(expected, -0.95);
+      EXPECT_TRUE(s.correlated.empty());
+      continue;
+    }
+    ASSERT_EQ(s.correlated.size(), 1u);
+    EXPECT_NEAR(s.correlated[0].correlation, expected, 1e-9);
+    VerdictInput input;
+    input.parameters = &line.parameters;
+    input.x = input.x_uncorrected = line.truth;
+    input.bias = VectorXd::Zero(2);
+    input.statistics = &s;
+    input.intervals = {line.truth - s.standard_error, line.truth + s.standard_error};
+    const auto found = verdicts(input);
+    EXPECT_EQ(found[0].remark,
+              fmt::format("correlated {:+.3f} with {}", expected, line.parameters[1].label()));
+    EXPECT_EQ(found[1].remark,
+              fmt::format("correlated {:+.3f} with {}", expected, line.parameters[0].label()));
+  }
 }
 
 TEST(Statistics, OfResidualsOfOneSizeInBlocksOfOneAreGslsCovariance) {

@@ -2,13 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "pipelines/command_line.hpp"
 #include "pipelines/describe.hpp"
 #include "pipelines/error_codes.hpp"
+#include "pipelines/progress.hpp"
 #include "runner_fake_stages.hpp"
 #include "tests/support/paths.hpp"
 
@@ -107,6 +110,31 @@ TEST_F(CommandTest, QuietRunsAreQuietAndOthersSayWhy) {
                           HasSubstr("[2/3] scaled (fake.scale): option factor changed 2.0 -> 3.0\n"),
                           HasSubstr("warning[fake-warning]")));
   EXPECT_THAT(out_, HasSubstr("report: "));
+}
+
+TEST(Progress, IsOneLineWrittenOverOnATerminalAndPlainLinesElsewhere) {
+  StageRecord stage;
+  stage.name = "fit";
+  stage.run = "fake.fit";
+  stage.reason = "no output yet";
+  stage.status = StageStatus::done;
+  stage.seconds = 1.2;
+  std::ostringstream terminal, file, nothing;
+  ProgressPrinter on_terminal(terminal, true, false), in_file(file, false, false), quiet(nothing, true, true);
+  for (ProgressPrinter* p : {&on_terminal, &in_file, &quiet}) {
+    p->stage_begins(stage, 1, 2);
+    p->stage_progress(stage, 0.01, "trial a");  // nothing in the first second
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  for (ProgressPrinter* p : {&on_terminal, &in_file, &quiet}) {
+    p->stage_progress(stage, 0.5, "trial b");
+    p->stage_ends(stage, {});
+  }
+  const std::string begin = "[1/2] fit (fake.fit): no output yet\n", end = "  fit done in 1.2\u202fs\n";
+  EXPECT_THAT(terminal.str(), AllOf(::testing::StartsWith(begin + "\r\x1b[K  fit   50 %  1."),
+                                    ::testing::EndsWith("\u202fs left  trial b\r\x1b[K" + end)));
+  EXPECT_EQ(file.str(), begin + end);  // there, a line every ten seconds
+  EXPECT_EQ(nothing.str(), "");
 }
 
 TEST(ErrorCodes, EveryCodeInTheSourcesIsExplained) {

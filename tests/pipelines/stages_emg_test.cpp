@@ -64,6 +64,25 @@ TEST(QualityStage, WarnsExcludesOrFailsAsTold) {
               HasSubstr("error[bad-channel]: channel `biceps` of trial `random-1` is bad: clipping"));
 }
 
+TEST(QualityStage, ThresholdsAreThoseOfTheOptions) {
+  const Inputs input = {{"signals", {&recordings()}}};
+  const auto bad = [&](const std::string& options) {
+    return run("emg.quality", options, input, {"curl"}).attributes.at("bad_channels");
+  };
+  const std::string lax = "median_high_hz = 450.0\n";
+  EXPECT_EQ(bad(lax + "snr_db = 0.0"), "0");
+  // Each threshold set where no recording can meet it: all five channels are bad, and the reason is its own.
+  for (const auto& [option, reason] : std::vector<std::pair<std::string, std::string>>{
+           {lax + "snr_db = 200.0", "dB above rest (limit 200 dB)"},
+           {lax + "snr_db = 0.0\nline_ratio = 1e-9", "line"},
+           {lax + "snr_db = 0.0\nbaseline_drift = 1e-9", "drift"},
+           {"snr_db = 0.0\nmedian_low_hz = 450.0\nmedian_high_hz = 460.0", "surface EMG (450-460 Hz)"}}) {
+    EXPECT_EQ(bad(option), "5") << option;
+    for (const data::Diagnostic& d : run("emg.quality", option, input, {"curl"}).diagnostics)
+      EXPECT_THAT(d.message, HasSubstr(reason));
+  }
+}
+
 TEST(QualityStage, AChannelExcludedByNameMustExist) {
   const Inputs input = {{"signals", {&recordings()}}};
   EXPECT_EQ(
