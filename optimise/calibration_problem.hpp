@@ -81,9 +81,9 @@ struct FreeQuantity {
 };
 /// Bounds used where none are given: strength 0.5 - 2.5, lengths x 0.85 - 1.15, pennation x 0.8 - 1.2,
 /// v_max x 0.5 - 1.5, delay 0 - 0.125 s, time constants 0.0075 - 0.060 s, recursion -0.95 - -0.05, shape
-/// -2.999 - -0.001 (Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004), gain 0.05
-/// - 20.
-FreeQuantity with_default_bounds(FreeQuantity free);
+/// -2.999 - -0.001 (Lloyd & Besier 2003, doi:10.1016/S0021-9290(03)00010-1; Buchanan et al. 2004) or, piecewise,
+/// 0.001 - 0.119 (Manal & Buchanan 2003, doi:10.1016/S0021-9290(03)00152-0), gain 0.05 - 20.
+FreeQuantity with_default_bounds(FreeQuantity free, emg::Nonlinearity nonlinearity);
 
 struct CalibrationProblemOptions {
   std::string coordinate;  ///< of the moment; default: the scene's only one

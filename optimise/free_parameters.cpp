@@ -71,14 +71,14 @@ void add(FreeParameters& out, const FreeQuantity& free, const std::string& owner
   p.owner = owner;
   p.name = factor ? std::string(e.name) + "_factor" : e.key;
   p.unit = factor ? "1" : e.unit;
-  double mean = 0.0;
+  double sum = 0.0;
   std::vector<Target> targets;
   for (std::size_t i : members) {
     const double value = gain ? start.gains[i] : start.muscles[i].get(free.quantity);
-    mean += value / static_cast<double>(members.size());
+    sum += value;
     targets.push_back({free.quantity, i, factor ? value : 0.0});
   }
-  p.start = factor ? 1.0 : mean;
+  p.start = factor ? 1.0 : sum / static_cast<double>(members.size());
   const bool scale_bounds = free.relative && !factor;
   const double unit = scale_bounds ? p.start : 1.0;
   p.lower = *free.lower * unit;
@@ -127,8 +127,12 @@ Scope parse_scope(const std::string& name) {
       data::suggest(name, std::vector<std::string>{"muscle", "channel", "group", "global"}));
 }
 
-FreeQuantity with_default_bounds(FreeQuantity free) {
-  const Entry& e = entry(free.quantity);
+FreeQuantity with_default_bounds(FreeQuantity free, emg::Nonlinearity nonlinearity) {
+  Entry e = entry(free.quantity);
+  if (free.quantity == Quantity::shape && nonlinearity == emg::Nonlinearity::piecewise) {
+    e.lower = 0.001;
+    e.upper = 0.119;
+  }
   if (!free.lower && !free.upper) free.relative = free.relative || e.relative;
   const bool same_kind = free.relative == e.relative;
   if (!free.lower && same_kind) free.lower = e.lower;
@@ -239,7 +243,7 @@ FreeParameters expand(const std::vector<FreeQuantity>& list, const std::vector<d
   }
   const bool recursive = model.activation.form == emg::ActivationForm::recursive;
   for (const FreeQuantity& given : list) {
-    const FreeQuantity free = with_default_bounds(given);
+    const FreeQuantity free = with_default_bounds(given, model.activation.nonlinearity);
     const std::string name = to_string(free.quantity);
     if (!free.lower || !free.upper) {
       complain(found, "bad-bounds", fmt::format("free `{}`: give both bounds, or none", name));

@@ -17,6 +17,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Root mean square, in units of sigma, below which residuals are rounding: their correlation says nothing.
+constexpr double kRounding = 1e-8;
+
 /// Autocovariance sum_i r_i r_(i+k) over all blocks.
 double lagged(const VectorXd& r, const std::vector<ResidualBlock>& blocks, std::size_t lag) {
   double sum = 0.0;
@@ -146,7 +149,9 @@ FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const Vec
                            fmt::format("{} residuals and {} parameters do not fit a {} x {} Jacobian", m, n,
                                        jacobian.rows(), jacobian.cols()));
   FitStatistics out;
-  const ResidualCorrelation correlation = residual_correlation(residuals, blocks);
+  const bool rounding = residuals.squaredNorm() < kRounding * kRounding * static_cast<double>(m);
+  const ResidualCorrelation correlation =
+      rounding ? ResidualCorrelation{} : residual_correlation(residuals, blocks);
   out.inflation = correlation.inflation;
   out.effective_samples = static_cast<double>(m) / out.inflation;
   out.degrees_of_freedom = std::max(out.effective_samples - static_cast<double>(n), 0.0);

@@ -70,8 +70,9 @@ struct StatisticsOptions {
 /// Covariance at a solution: S with Bartlett weights inside blocks (Newey & West 1987, doi:10.2307/1913610;
 /// lag from the first zero crossing of the residuals' autocorrelation, twice), times N / (N - n) with N
 /// effective samples, and no standard error below the classical one with variance s^2 tau. All parameters are
-/// treated as free, also those at a bound: wider, never falsely narrow. Noise-free data give a covariance
-/// near zero, weak directions still named.
+/// treated as free, also those at a bound: wider, never falsely narrow. Noise-free data
+/// (residuals below 1e-8 of sigma, whose correlation is not looked at) give a covariance near zero, weak
+/// directions still named.
 FitStatistics fit_statistics(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x,
                              const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian,
                              const std::vector<ResidualBlock>& blocks, const StatisticsOptions& options = {});

@@ -74,6 +74,10 @@ std::vector<data::ParameterVerdict> verdicts(const VerdictInput& input) {
     } else {
       v.verdict = "identified";
     }
+    if (v.verdict.starts_with("AT ") && std::abs(v.fitted - solution) > 1e-6 * width)
+      append(v.remark,
+             "the least-squares solution ends there; the value has the bias of the excitation's noise taken "
+             "off");
     if (p.prior && finite && statistics.prior_ratio[i] > 0.5)
       append(v.remark,
              fmt::format("determined by its prior (posterior / prior sd {:.2f})", statistics.prior_ratio[i]));

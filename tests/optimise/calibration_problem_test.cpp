@@ -30,10 +30,6 @@ CalibrationProblemOptions everything_free(const ModelChoice& model = {}) {
                   free(Quantity::delay),
                   free(Quantity::shape),
                   free(Quantity::gain)};
-  if (model.activation.nonlinearity == emg::Nonlinearity::piecewise) {
-    options.free[5].lower = 0.005;
-    options.free[5].upper = 0.115;
-  }
   const bool recursive = model.activation.form == emg::ActivationForm::recursive;
   options.free.push_back(free(recursive ? Quantity::recursion_1 : Quantity::time_constant_1, Scope::group));
   options.free.push_back(free(recursive ? Quantity::recursion_2 : Quantity::time_constant_2, Scope::global));
@@ -231,6 +227,19 @@ TEST(CalibrationProblem, SharedLengthsAreFactorsAndOthersValues) {
   const data::Subject subject = problem.subject(x);
   EXPECT_DOUBLE_EQ(subject.muscle("TRIlat").parameters.tendon_slack_length_m,
                    1.02 * elbow().muscle("TRIlat").parameters.tendon_slack_length_m);
+}
+
+TEST(CalibrationProblem, BoundsOfTheShapeAreThoseOfTheNonlinearity) {
+  data::Scene scene = elbow();
+  CalibrationProblemOptions options;
+  options.model.activation.nonlinearity = emg::Nonlinearity::piecewise;
+  options.free = {free(Quantity::shape, Scope::global)};
+  EXPECT_EQ(error_of([&] { CalibrationProblem(scene, trials(), options); }),
+            "bad-parameter: parameter `* shape`: start -1.5 is outside the bounds [0.001, 0.119]");
+  for (data::SceneMuscle& m : scene.muscles) m.activation.shape = 0.06;
+  const CalibrationProblem problem(scene, trials(), options);
+  EXPECT_EQ(problem.parameters()[0].lower, 0.001);
+  EXPECT_EQ(problem.parameters()[0].upper, 0.119);
 }
 
 TEST(CalibrationProblem, RefusesAMomentThatDoesNotVary) {

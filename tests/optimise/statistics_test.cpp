@@ -230,6 +230,17 @@ TEST(Statistics, RunningSumsEqualTheBartlettSumOfNeweyAndWest) {
     EXPECT_NEAR(s.covariance(j, j), std::max(C(j, j), classical(j, j)), 1e-10 * C(j, j));
 }
 
+TEST(Statistics, ResidualsAtRoundingCountAsManySamplesAsTheyAre) {
+  const Line line(400);
+  const VectorXd course = VectorXd::LinSpaced(400, 0.0, 3.0).array().sin();
+  const auto degrees = [&](double size) {
+    return fit_statistics(line.parameters, line.truth, size * course, line.J, {{"all", 0, 400}})
+        .degrees_of_freedom;
+  };
+  EXPECT_EQ(degrees(1e-12), 398.0);
+  EXPECT_LT(degrees(1e-3), 4.0);
+}
+
 TEST(Statistics, StudentQuantileIsTheTabulatedOne) {
   EXPECT_NEAR(student_quantile(10.0), 2.228138852, 1e-8);
   EXPECT_NEAR(student_quantile(1e7), 1.959964, 1e-5);
