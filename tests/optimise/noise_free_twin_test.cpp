@@ -24,7 +24,7 @@ class NoiseFreeTwin : public ::testing::TestWithParam<hill::TendonKind> {
     CalibrationOptions options;
     options.problem.model.tendon = GetParam();
     options.problem.free = quantities;
-    options.problem.decimate = 2;
+    options.problem.decimate = 4;
     const CalibrationResult result = calibrate(start, exact_trials(twin), options);
     EXPECT_TRUE(result.summary.converged) << result.summary.message();
     EXPECT_LT(result.pooled.rmse, 1e-6);

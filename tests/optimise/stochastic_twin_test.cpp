@@ -54,7 +54,7 @@ TEST(StochasticTwin, IntervalsCoverTheTruthOverTenSeeds) {
 TEST(StochasticTwin, GainAndStrengthWithoutAnMvcAreNamedInEverySeed) {
   const data::Scene scene = elbow();
   StochasticStudy study;
-  study.duration_s = 5.0;
+  study.duration_s = 3.0;
   study.replicates = 4;
   study.free = {free(Quantity::strength, Scope::group), free(Quantity::gain)};
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -81,7 +81,7 @@ TEST(StochasticTwin, RecursionCoefficientsAreNeverAConfidentWrongPair) {
   for (data::SceneMuscle& m : scene.muscles)
     m.activation.time_constant_1_s = m.activation.time_constant_2_s = emg::time_constant(-0.5, 100.0);
   StochasticStudy study;
-  study.duration_s = 5.0;
+  study.duration_s = 3.0;
   study.replicates = 4;
   study.model.activation.form = emg::ActivationForm::recursive;
   study.model.recursion_rate_hz = 100.0;
