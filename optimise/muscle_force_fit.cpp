@@ -48,19 +48,19 @@ class Problem final : public LeastSquaresProblem {
           const std::vector<ReferenceForce>& references, const MuscleForceModel& model)
       : start_(std::move(start)), parameters_(std::move(parameters)), references_(references), model_(model) {
     const auto m = static_cast<Eigen::Index>(references.size());
-    force_.resize(m);
+    reference_.resize(m);
     scale_.resize(m);
     std::map<std::string, double> square;
-    for (const ReferenceForce& r : references) square[r.set] += r.weight * r.force_n * r.force_n;
+    for (const ReferenceForce& r : references) square[r.set] += r.weight * r.value * r.value;
     const auto sets =
         std::count_if(square.begin(), square.end(), [](const auto& s) { return s.second > 0.0; });
     if (sets == 0) {
-      throw data::InputError("no-references", fmt::format("{}: no reference force has a weight", start_.name),
-                             "give forces above 0 with weights above 0");
+      throw data::InputError("no-references", fmt::format("{}: no reference has a weight", start_.name),
+                             "give forces or moments other than 0 with weights above 0");
     }
     for (Eigen::Index i = 0; i < m; ++i) {
       const ReferenceForce& r = references[static_cast<std::size_t>(i)];
-      force_[i] = r.force_n;
+      reference_[i] = r.value;
       const double whole = static_cast<double>(sets) * square.at(r.set);
       scale_[i] = r.weight > 0.0 && whole > 0.0 ? std::sqrt(r.weight / whole) : 0.0;
     }
@@ -72,17 +72,19 @@ class Problem final : public LeastSquaresProblem {
 
   fem::MuscleBody body(const Eigen::VectorXd& x) const {
     fem::MuscleBody b = start_;
+    std::vector<std::pair<std::string, double>> values;
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      fem::set_body_value(b, parameters_[j].name, x[static_cast<Eigen::Index>(j)]);
+      values.emplace_back(parameters_[j].name, x[static_cast<Eigen::Index>(j)]);
+    fem::set_body_values(b, values);
     return b;
   }
 
   std::unique_ptr<Evaluator> evaluator() const override {
     struct Own final : Evaluator {
-      Own(const Problem& p, std::unique_ptr<MuscleForces> f) : problem(p), forces(std::move(f)) {}
+      Own(const Problem& p, std::unique_ptr<MuscleForces> m) : problem(p), model(std::move(m)) {}
       void evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) override {
-        const Eigen::VectorXd here = forces->forces_n(problem.body(x), false);
-        r = problem.scale_.cwiseProduct(here - problem.force_);
+        const Eigen::VectorXd here = model->values(problem.body(x), false);
+        r = problem.scale_.cwiseProduct(here - problem.reference_);
         if (!J) return;
         J->resize(r.size(), x.size());
         for (Eigen::Index j = 0; j < x.size(); ++j) {
@@ -90,12 +92,12 @@ class Problem final : public LeastSquaresProblem {
           Eigen::VectorXd moved = x;
           const double step = difference * (p.upper - p.lower);
           moved[j] += x[j] + step <= p.upper ? step : -step;
-          const Eigen::VectorXd there = forces->forces_n(problem.body(moved), true);
+          const Eigen::VectorXd there = model->values(problem.body(moved), true);
           J->col(j) = problem.scale_.cwiseProduct(there - here) / (moved[j] - x[j]);
         }
       }
       const Problem& problem;
-      std::unique_ptr<MuscleForces> forces;
+      std::unique_ptr<MuscleForces> model;
     };
     return std::make_unique<Own>(*this, model_.make(references_));
   }
@@ -105,7 +107,7 @@ class Problem final : public LeastSquaresProblem {
   std::vector<Parameter> parameters_;
   const std::vector<ReferenceForce>& references_;
   const MuscleForceModel& model_;
-  Eigen::VectorXd force_, scale_;
+  Eigen::VectorXd reference_, scale_;
 };
 
 }  // namespace
@@ -120,7 +122,7 @@ MuscleForceFit fit_muscle_forces(const fem::MuscleBody& start, const std::vector
   Eigen::VectorXd r;
   Eigen::MatrixXd J;
   problem.evaluator()->evaluate(fit.summary.x, r, &J);
-  fit.force_n = model.make(references)->forces_n(fit.body, false);
+  fit.value = model.make(references)->values(fit.body, false);
   fit.statistics =
       fit_statistics(problem.parameters(), fit.summary.x, r, J, {{start.name, 0, references.size()}});
   VerdictInput input;
@@ -137,59 +139,36 @@ MuscleForceFit fit_muscle_forces(const fem::MuscleBody& start, const std::vector
 }
 
 std::vector<ForceAgreement> agreement(const std::vector<ReferenceForce>& references,
-                                      const Eigen::VectorXd& force_n) {
+                                      const Eigen::VectorXd& value) {
   std::vector<ForceAgreement> out;
   std::vector<double> error, size;
   for (std::size_t i = 0; i < references.size(); ++i) {
     const ReferenceForce& r = references[i];
     const std::string set = r.weight > 0.0 ? r.set : r.set + ", not fitted";
-    auto at = std::find_if(out.begin(), out.end(), [&](const ForceAgreement& a) { return a.set == set; });
+    auto at = std::find_if(out.begin(), out.end(),
+                           [&](const ForceAgreement& a) { return a.set == set && a.measure == r.measure; });
     if (at == out.end()) {
-      out.push_back({set});
+      out.push_back({set, r.measure});
       error.push_back(0.0);
       size.push_back(0.0);
       at = out.end() - 1;
     }
     const auto k = static_cast<std::size_t>(at - out.begin());
-    const double e = force_n[static_cast<Eigen::Index>(i)] - r.force_n;
+    const double e = value[static_cast<Eigen::Index>(i)] - r.value;
     ++at->states;
     error[k] += e * e;
-    size[k] += r.force_n * r.force_n;
-    if (std::abs(e) > std::abs(at->worst_n)) {
-      at->worst_n = e;
+    size[k] += r.value * r.value;
+    if (std::abs(e) > std::abs(at->worst)) {
+      at->worst = e;
       at->worst_q_rad = r.q_rad;
       at->worst_activation = r.activation;
     }
   }
   for (std::size_t k = 0; k < out.size(); ++k) {
     out[k].relative_l2 = std::sqrt(error[k] / size[k]);
-    out[k].rms_n = std::sqrt(error[k] / static_cast<double>(out[k].states));
+    out[k].rms = std::sqrt(error[k] / static_cast<double>(out[k].states));
   }
   return out;
-}
-
-data::Table agreement_table(const std::vector<ForceAgreement>& agreement) {
-  std::vector<std::string> set;
-  std::vector<double> states, relative, rms, worst, angle, activation;
-  for (const ForceAgreement& a : agreement) {
-    set.push_back(a.set);
-    states.push_back(static_cast<double>(a.states));
-    relative.push_back(a.relative_l2);
-    rms.push_back(a.rms_n);
-    worst.push_back(a.worst_n);
-    angle.push_back(a.worst_q_rad);
-    activation.push_back(a.worst_activation);
-  }
-  data::Table table;
-  table.title = "Agreement with the reference forces";
-  table.columns = {{"set", "", set},
-                   {"states", "1", states},
-                   {"relative_l2", "1", relative},
-                   {"rms", "N", rms},
-                   {"worst", "N", worst},
-                   {"worst_angle", "rad", angle},
-                   {"worst_activation", "1", activation}};
-  return table;
 }
 
 }  // namespace brachium::optimise

@@ -26,17 +26,22 @@ auto tried(const fem::MuscleBody& body, F&& f) {
 class StrapForces final : public MuscleForces {
  public:
   explicit StrapForces(const std::vector<ReferenceForce>& references) : references_(references) {}
-  Eigen::VectorXd forces_n(const fem::MuscleBody& body, bool) override {
+  Eigen::VectorXd values(const fem::MuscleBody& body, bool) override {
     return tried(body, [&] {
       Eigen::VectorXd f(static_cast<Eigen::Index>(references_.size()));
       for (std::size_t i = 0; i < references_.size(); ++i)
-        f[static_cast<Eigen::Index>(i)] =
-            fem::strap_force_n(body, references_[i].q_rad, references_[i].activation);
+        f[static_cast<Eigen::Index>(i)] = value(body, references_[i]);
       return f;
     });
   }
 
  private:
+  static double value(const fem::MuscleBody& body, const ReferenceForce& r) {
+    const double force_n = fem::strap_force_n(body, r.q_rad, r.activation);
+    return r.measure == Measure::force ? force_n
+                                       : force_n * fem::CablePath(body.cable, r.q_rad).lever_arm_m();
+  }
+
   const std::vector<ReferenceForce>& references_;
 };
 
@@ -59,7 +64,7 @@ class ContinuumForces final : public MuscleForces {
     });
   }
 
-  Eigen::VectorXd forces_n(const fem::MuscleBody& body, bool variation) override {
+  Eigen::VectorXd values(const fem::MuscleBody& body, bool variation) override {
     return tried(body, [&] {
       auto states = std::make_unique<fem::MuscleStates>(body, options_.range, options_.hinge, options_.bones,
                                                         options_.states, base_.get());
@@ -75,7 +80,7 @@ class ContinuumForces final : public MuscleForces {
                            r.q_rad * 180.0 / std::numbers::pi, r.activation),
                0, 0.0, 0.0, body.name});
         }
-        f[static_cast<Eigen::Index>(i)] = s.force_n;
+        f[static_cast<Eigen::Index>(i)] = r.measure == Measure::force ? s.force_n : s.moment_n_m;
       }
       if (!variation) base_ = std::move(states);
       return f;

@@ -173,6 +173,25 @@ ContactPoints ContactSurface::points(const Eigen::VectorXd& dofs, const Pose& po
   return result;
 }
 
+NodalPressure ContactSurface::at_mesh_points(const Eigen::VectorXd& dofs, const Pose& pose,
+                                             const Eigen::VectorXd& multiplier_pa) const {
+  const ContactPoints all = points(dofs, pose, multiplier_pa);
+  const Eigen::Index count = discretisation_->mesh().points.cols();
+  NodalPressure at{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
+  const int n_q = static_cast<int>(value_.size());
+  for (int i = 0; i < point_count(); ++i) {
+    const Eigen::VectorXd& N = value_[static_cast<std::size_t>(i % n_q)];
+    for (Eigen::Index a = 0; a < faces_.rows(); ++a) {
+      const double area = weight_[i] * N[a] * N[a] / N.squaredNorm();
+      at.area_m2[faces_(a, i / n_q)] += area;
+      at.pressure_pa[faces_(a, i / n_q)] += area * all.pressure_pa[i];
+    }
+  }
+  for (Eigen::Index p = 0; p < count; ++p)
+    if (at.area_m2[p] > 0.0) at.pressure_pa[p] /= at.area_m2[p];
+  return at;
+}
+
 std::vector<char> ContactSurface::active_set(const Eigen::VectorXd& dofs, const Pose& pose,
                                              const Eigen::VectorXd& multiplier_pa) const {
   const ContactPoints all = points(dofs, pose, multiplier_pa);

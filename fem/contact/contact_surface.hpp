@@ -49,6 +49,12 @@ struct ContactPoints {
   Eigen::VectorXd gap_m, pressure_pa, area_m2;
 };
 
+/// Pressure at the points of the mesh, for pictures: each takes the mean over its share of the faces,
+/// N_a^2 / sum N_b^2 of it, so that it is never negative and the sum of area x pressure is the integral of t.
+struct NodalPressure {
+  Eigen::VectorXd pressure_pa, area_m2;  ///< by point of the mesh; 0 off the surface
+};
+
 class ContactSurface {
  public:
   /// Throws InputError("missing-surface"), ("contact-option").
@@ -69,6 +75,9 @@ class ContactSurface {
 
   ContactPoints points(const Eigen::VectorXd& dofs, const Pose& pose,
                        const Eigen::VectorXd& multiplier_pa) const;
+
+  NodalPressure at_mesh_points(const Eigen::VectorXd& dofs, const Pose& pose,
+                               const Eigen::VectorXd& multiplier_pa) const;
 
   /// Which points press, one bit a point: a Newton iteration has converged only where it no longer changes.
   std::vector<char> active_set(const Eigen::VectorXd& dofs, const Pose& pose,

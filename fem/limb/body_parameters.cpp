@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "data/model/error.hpp"
+#include "fem/limb/strap.hpp"
 
 namespace brachium::fem {
 namespace {
@@ -19,6 +20,10 @@ double greatest_radius(const MuscleBody& body) {
 
 double least_radius(const MuscleBody& body) {
   return *std::min_element(body.profile_m.begin(), body.profile_m.end());
+}
+
+double volume(const MuscleBody& body) {
+  return mean_area_m2(body) * body.belly_length_m;
 }
 
 double passive_stress(const FibrousTissue& t, double stretch) {
@@ -67,6 +72,12 @@ const std::vector<Access>& accesses() {
          const double factor = v / greatest_radius(b);
          for (double& r : b.profile_m) r *= factor;
        }},
+      {{"volume_m3", "m3", "of the belly, by the profile as a whole at the length it has", 2e-5, 1e-3},
+       volume,
+       [](MuscleBody& b, double v) {
+         const double factor = std::sqrt(v / volume(b));
+         for (double& r : b.profile_m) r *= factor;
+       }},
       {{"end_radius_norm", "1", "the profile's least radius over its greatest, which stays", 0.3, 1.0},
        [](const MuscleBody& b) { return least_radius(b) / greatest_radius(b); },
        [](MuscleBody& b, double v) {
@@ -83,6 +94,10 @@ const std::vector<Access>& accesses() {
       {{"tendon_origin_m", "m", "meshed tendon at the origin", 0.0, 0.15}, BRACHIUM_MEMBER(tendon_origin_m)},
       {{"tendon_insertion_m", "m", "meshed tendon at the insertion", 0.0, 0.15},
        BRACHIUM_MEMBER(tendon_insertion_m)},
+      {{"insertion_distance_m", "m", "of the tendon's insertion from the hinge", 0.015, 0.08},
+       BRACHIUM_MEMBER(cable.distance_m)},
+      {{"insertion_offset_rad", "rad", "of the insertion ahead of the forearm's long axis", -1.5, 0.5},
+       BRACHIUM_MEMBER(cable.offset_rad)},
       {{"max_stress_pa", "Pa", "sigma_max", 5e4, 1e6, true}, BRACHIUM_MEMBER(material.max_stress_pa)},
       {{"optimal_stretch", "1", "lambda_opt", 1.0, 1.8, true},
        BRACHIUM_MEMBER(material.force_length.optimal_stretch)},
@@ -142,6 +157,20 @@ void set_body_value(MuscleBody& body, const std::string& name, double value) {
                            "its length and greatest radius stretch it as a whole");
   if (name == "passive_exponent") return set_passive(body, passive_stretch(body), value);
   find(name).set(body, value);
+}
+
+void set_body_values(MuscleBody& body, const std::vector<std::pair<std::string, double>>& values) {
+  const auto given = [&](const std::string& name) {
+    return std::any_of(values.begin(), values.end(), [&](const auto& v) { return v.first == name; });
+  };
+  if (given("volume_m3") && given("greatest_radius_m"))
+    throw data::InputError("contradiction",
+                           fmt::format("{}: greatest_radius_m and volume_m3 are both given", body.name),
+                           "at a given length one sets the other: take one of them");
+  for (const auto& [name, value] : values)
+    if (name != "volume_m3") set_body_value(body, name, value);
+  for (const auto& [name, value] : values)  // at the length and the ends' share that the others leave
+    if (name == "volume_m3") set_body_value(body, name, value);
 }
 
 }  // namespace brachium::fem

@@ -5,6 +5,7 @@
 /// alone spans ten decades at the exponents in use. Setting the exponent keeps λ_p.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fem/limb/muscle_body.hpp"
@@ -17,13 +18,17 @@ struct BodyParameter {
   bool material = false;            ///< of the law; else of the geometry
 };
 
-/// belly_length_m, greatest_radius_m, pre_stretch, tendon lengths, max_stress_pa, the active bell, ground and
-/// passive fibres.
+/// belly_length_m, greatest_radius_m, volume_m3, pre_stretch, tendon lengths, the insertion's place, max_stress_pa, the active
+/// bell, ground and passive fibres.
 const std::vector<BodyParameter>& body_parameters();
 
 /// Throw InputError("unknown-body-parameter") with the nearest name; `body_value` of passive_stretch also
 /// InputError("limb-geometry") where passive fibres never bear 0.1 MPa.
 double body_value(const MuscleBody& body, const std::string& name);
 void set_body_value(MuscleBody& body, const std::string& name, double value);
+
+/// Several at once, whatever their order: all of them are what was asked for afterwards. Throws
+/// InputError("contradiction") for radius and volume together: the length being given, they are one.
+void set_body_values(MuscleBody& body, const std::vector<std::pair<std::string, double>>& values);
 
 }  // namespace brachium::fem

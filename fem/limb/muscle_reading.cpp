@@ -13,21 +13,22 @@
 namespace brachium::fem {
 namespace {
 
-ContactSurface contact_surface(const MuscleReading& m, const RigidShape& shape, double penalty,
+ContactSurface contact_surface(const Discretisation& discretisation, const RigidShape& shape, double penalty,
                                double smoothing) {
   ContactOptions options;
   options.penalty_pa_per_m = penalty;
   options.smoothing_m = smoothing;
-  return ContactSurface(m.discretisation, "side", shape, options);
+  return ContactSurface(discretisation, "side", shape, options);
 }
 
 /// Calls `f` with each contact, its surface, and its multipliers (none: penalty alone).
 template <class F>
-void for_each_contact(const MuscleReading& m, const Configuration& now, F&& f) {
+void for_each_contact(const Problem& problem, const Discretisation& discretisation, const Configuration& now,
+                      F&& f) {
   Eigen::Index first = 0;
-  for (const Contact& contact : m.problem.contacts) {
+  for (const Contact& contact : problem.contacts) {
     const ContactSurface surface =
-        contact_surface(m, contact.body, contact.penalty_pa_per_m, contact.smoothing_m);
+        contact_surface(discretisation, contact.body, contact.penalty_pa_per_m, contact.smoothing_m);
     Eigen::VectorXd multiplier;
     if (now.contact_multiplier.size() > 0)
       multiplier = now.contact_multiplier.segment(first, surface.point_count());
@@ -70,7 +71,7 @@ double moment_by_stress(const MuscleReading& m, const Configuration& now) {
   // Off the faces between cells, where a plane would cut along edges.
   const SectionFigures cut = section(
       m.discretisation, now, plane + 1e-3 * m.body.belly_length_m / m.body.belly_cells * along, along);
-  for_each_contact(m, now,
+  for_each_contact(m.problem, m.discretisation, now,
                    [&](const Contact& contact, const ContactSurface& surface, const auto& multiplier) {
                      const ContactPoints points = surface.points(now.dofs, {}, multiplier);
                      for (Eigen::Index i = 0; i < points.pressure_pa.size(); ++i) {
@@ -138,7 +139,7 @@ void read_contacts(const MuscleReading& m, const std::vector<Bone>& left_out, co
                    SolvedMuscle& state) {
   const Eigen::VectorXd& dofs = accepted.state.configuration.dofs;
   for_each_contact(
-      m, accepted.state.configuration,
+      m.problem, m.discretisation, accepted.state.configuration,
       [&](const Contact& contact, const ContactSurface& surface, const auto& multiplier) {
         Eigen::VectorXd force = Eigen::VectorXd::Zero(dofs.size());
         const ContactSums sums = surface.add_force(dofs, {}, multiplier, force);
@@ -148,8 +149,19 @@ void read_contacts(const MuscleReading& m, const std::vector<Bone>& left_out, co
       });
   for (const Bone& bone : left_out) {
     state.least_gap_left_out_m =
-        std::min(state.least_gap_left_out_m, contact_surface(m, bone.shape, 1.0, 0.0).least_gap_m(dofs, {}));
+        std::min(state.least_gap_left_out_m,
+                 contact_surface(m.discretisation, bone.shape, 1.0, 0.0).least_gap_m(dofs, {}));
   }
+}
+
+Eigen::VectorXd contact_pressure_pa(const Problem& problem, const Discretisation& discretisation,
+                                    const Configuration& now) {
+  Eigen::VectorXd pressure = Eigen::VectorXd::Zero(discretisation.mesh().points.cols());
+  for_each_contact(problem, discretisation, now,
+                   [&](const Contact&, const ContactSurface& surface, const auto& multiplier) {
+                     pressure += surface.at_mesh_points(now.dofs, {}, multiplier).pressure_pa;
+                   });
+  return pressure;
 }
 
 double least_axis_distance_m(const MuscleBody& body, const AngleRange& range, const RigidShape& shape) {

@@ -24,6 +24,10 @@ void read_slopes(const MuscleReading& muscle, const AcceptedState& accepted, Sol
 void read_contacts(const MuscleReading& muscle, const std::vector<Bone>& left_out,
                    const AcceptedState& accepted, SolvedMuscle& state);
 
+/// Pressure of all contacts at the mesh's points [Pa], penalty and multipliers (NodalPressure).
+Eigen::VectorXd contact_pressure_pa(const Problem& problem, const Discretisation& discretisation,
+                                    const Configuration& now);
+
 /// How the distal end moves with the angle [m/rad, 1], of the end's barycentre `end_m`.
 struct EndVelocity {
   Eigen::Vector3d linear;

@@ -110,6 +110,13 @@ void Stepper::relax(Attempt& attempt, const LoadPoint& from, const LoadPoint& to
   attempt.reason = r.reason;
   attempt.stability = r.stability;
   attempt.last = std::move(r.last);
+  const int before = record.augmentations;
+  press(attempt, to, record);  // the viscous flow holds the contacts by their penalty
+  if (!attempt.accepted || record.augmentations == before) return;
+  attempt.stability = check_stability(equations_, factor_, options_, attempt.configuration, to);
+  if (attempt.stability.verdict != "unstable") return;
+  attempt.accepted = false;
+  attempt.reason = "stable while the penalty holds the contacts, unstable with contacts to their tolerance";
 }
 
 bool Stepper::wants_stability(double time) const {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -96,10 +97,32 @@ std::vector<OptionSpec> limb_option_specs() {
           solver_option()};
 }
 
+LimbScene limb_of_options(const Options& options) {
+  return read_limb(options.text("limb"), parse_limb_variant(options.text("variant")), mesh_of(options));
+}
+
+void set_limb_parameters(const Options& options, LimbScene& limb) {
+  change(options.number_map("pre_stretch"), limb, "pre_stretch",
+         [](fem::MuscleBody& b) -> double& { return b.pre_stretch; });
+  change(options.number_map("max_stress_Pa"), limb, "max_stress_Pa",
+         [](fem::MuscleBody& b) -> double& { return b.material.max_stress_pa; });
+}
+
+void make_stress_free(PreparedLimb& limb, const std::vector<std::string>& muscles,
+                      const StageContext& context) {
+  for (LimbMuscle& m : limb.scene.muscles) {
+    if (std::find(muscles.begin(), muscles.end(), m.body.name) == muscles.end()) continue;
+    const std::optional<std::string> line = make_stress_free(m, limb.scene, limb.solving);
+    if (!line) continue;
+    limb.log.push_back(*line);
+    if (context.say) context.say(*line);
+  }
+}
+
 PreparedLimb prepare_limb(const StageContext& context) {
   const Options& options = *context.options;
   PreparedLimb out;
-  out.scene = read_limb(options.text("limb"), parse_limb_variant(options.text("variant")), mesh_of(options));
+  out.scene = limb_of_options(options);
   std::vector<std::string> names;
   for (const LimbMuscle& m : out.scene.muscles) names.push_back(m.body.name);
   if (options.text("scale_to") == "subject") {
@@ -110,17 +133,11 @@ PreparedLimb prepare_limb(const StageContext& context) {
     out.scaling = scale_limb(out.scene, *out.grouping, scene, coordinate, options.text("strength"));
   }
   if (const StageData* fitted = context.maybe_input("fitted")) apply_fitted(*fitted, out.scene);
-  change(options.number_map("pre_stretch"), out.scene, "pre_stretch",
-         [](fem::MuscleBody& b) -> double& { return b.pre_stretch; });
-  change(options.number_map("max_stress_Pa"), out.scene, "max_stress_Pa",
-         [](fem::MuscleBody& b) -> double& { return b.material.max_stress_pa; });
+  set_limb_parameters(options, out.scene);
   out.solving.solve = solve_options(options, 1);
   out.solving.step_rad = options.number("step_deg") * degree;
   out.solving.step_activation = options.number("step_activation");
   out.solving.contact_tolerance_m = options.number("contact_tolerance_m");
-  out.log = find_stress_free_shapes(out.scene, out.solving);
-  for (const std::string& line : out.log)
-    if (context.say) context.say(line);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fem/limb/muscle_reading.hpp"
 #include "fem/quantities/point_fields.hpp"
 #include "fem/surrogate/samples.hpp"
 #include "pipelines/fingerprint.hpp"
@@ -35,25 +36,6 @@ std::string states_digest(const StageContext& context) {
   return digest(parts);
 }
 
-/// Pressure that the contacts exert at the points of the mesh, by the law of fem/contact/contact_surface.hpp.
-Eigen::VectorXd pressure_at_points(const fem::MapState& state) {
-  const data::Mesh& mesh = *state.problem.mesh;
-  Eigen::VectorXd pressure = Eigen::VectorXd::Zero(mesh.points.cols());
-  for (const fem::Contact& contact : state.problem.contacts) {
-    const double w = contact.smoothing_m;
-    for (const int p : mesh.surface_points(contact.surface)) {
-      const Eigen::Vector3d x =
-          mesh.points.col(p) + state.solved.configuration.dofs.segment<3>(3 * static_cast<Eigen::Index>(p));
-      const double gap = fem::distance(contact.body, x).value;
-      const double depth = gap <= -0.5 * w ? -gap
-                           : gap < 0.5 * w ? std::pow(0.5 * w - gap, 2) / (2.0 * w)
-                                           : 0.0;
-      pressure[p] += contact.penalty_pa_per_m * depth;
-    }
-  }
-  return pressure;
-}
-
 /// One state as the run keeps it: rows of the stage's tables.
 FemTables rows_of(const std::string& muscle, const fem::MapState& state) {
   FemTables tables;
@@ -65,7 +47,8 @@ FemTables rows_of(const std::string& muscle, const fem::MapState& state) {
   auto fields = fields_at_points(state.problem, state.discretisation, at);
   std::erase_if(fields,
                 [](const auto& f) { return f.first != "fibre_stretch" && f.first != "fibre_stress_pa"; });
-  fields.emplace_back("contact_pressure_pa", pressure_at_points(state));
+  fields.emplace_back("contact_pressure_pa", fem::contact_pressure_pa(state.problem, state.discretisation,
+                                                                      state.solved.configuration));
   tables["surface"] = FemSurface(*state.problem.mesh).state(0, state.solved.configuration, fields);
   return tables;
 }
@@ -112,11 +95,10 @@ class Study {
         checkpoints_(context.beside.empty() ? std::filesystem::path()
                                             : std::filesystem::path(context.beside.string() + ".restart"),
                      states_digest(context)) {
-    const std::vector<std::string>& only = context.options->texts("muscles");
-    for (const LimbMuscle& m : limb_.scene.muscles) names_.push_back(m.body.name);
-    if (!only.empty()) names_ = data::match_names(only, names_, "muscle");
+    names_ = chosen_muscles(*context.options, limb_.scene);
     bounds_ = bounds_of(asked_, *context.options, limb_.scene.range);
     check_design(asked_, bounds_, context.options->text("surrogate"));
+    make_stress_free(limb_, names_, context);
     for (const std::string& name : names_)
       requests_.push_back({limb_.scene.muscle(name).body,
                            limb_.scene.range,
@@ -398,6 +380,27 @@ class Study {
 };
 
 }  // namespace
+
+std::vector<data::Diagnostic> check_muscle_map(const CheckContext& context) {
+  const Options& options = *context.options;
+  Mistakes mistakes;
+  const std::optional<LimbScene> limb = check_limb(context, mistakes);
+  if (!limb) return std::move(mistakes).list();
+  mistakes.guarded(options, {}, [&] { chosen_muscles(options, *limb); });
+  mistakes.guarded(options, {}, [&] {
+    const std::vector<fem::StatePoint> asked = asked_states(options, limb->range);
+    for (const fem::StatePoint& s : asked) {
+      if (s.theta_rad > limb->range.lower_rad - 1e-9 && s.theta_rad < limb->range.upper_rad + 1e-9) continue;
+      const std::string key = options.numbers("angle_deg").empty() ? "state" : "angle_deg";
+      return mistakes.error(options, "limb-range",
+                            fmt::format("`{}`: there is no state at {:.6g} deg", key, s.theta_rad / degree),
+                            fmt::format("angles from {:.6g} to {:.6g} deg", limb->range.lower_rad / degree,
+                                        limb->range.upper_rad / degree));
+    }
+    check_design(asked, bounds_of(asked, options, limb->range), options.text("surrogate"));
+  });
+  return std::move(mistakes).list();
+}
 
 void run_muscle_map(const StageContext& context, StageOutput& out) {
   if (context.progress) context.progress(0.0, "limb");

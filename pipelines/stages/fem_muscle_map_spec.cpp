@@ -62,6 +62,7 @@ void add_muscle_map_stage(Catalogue& catalogue) {
       optional_text("coordinate", "joint coordinate of the scene, where the limb is scaled to a subject")};
   spec.options.insert(spec.options.end(), own.begin(), own.end());
   spec.run = run_muscle_map;
+  spec.check = check_muscle_map;
   spec.report = fill_muscle_map_report;
   spec.methods = muscle_map_methods;
   catalogue.add(std::move(spec));

@@ -254,6 +254,23 @@ class Study {
   std::vector<std::vector<MuscleFrames>> results_;  ///< by muscle and trial
 };
 
+std::vector<data::Diagnostic> check(const CheckContext& context) {
+  const Options& options = *context.options;
+  Mistakes mistakes;
+  mistakes.guarded(options, {}, [&] { check_lever_arm(options); });
+  if (!options.has("limb")) return std::move(mistakes).list();
+  const std::optional<LimbScene> limb = check_limb(context, mistakes);
+  if (!limb || !context.scene || options.text("scale_to") != "none") return std::move(mistakes).list();
+  std::vector<std::string> names;
+  for (const LimbMuscle& m : limb->muscles) names.push_back(m.body.name);
+  mistakes.guarded(options, {}, [&] {
+    const data::Coordinate& coordinate =
+        coordinate_of(*context.scene, options.maybe_text("coordinate").value_or(""));
+    group_muscles(options, *context.scene, coordinate, nullptr, names);
+  });
+  return std::move(mistakes).list();
+}
+
 void run(const StageContext& context, StageOutput& out) {
   Study(context, out).run();
 }
@@ -305,6 +322,7 @@ void add_upper_limb_stage(Catalogue& catalogue) {
     spec.options.push_back(std::move(o));
   }
   spec.run = run;
+  spec.check = check;
   spec.report = fill_upper_limb_report;
   spec.methods = upper_limb_methods;
   catalogue.add(std::move(spec));

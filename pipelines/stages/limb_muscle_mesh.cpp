@@ -111,20 +111,17 @@ std::vector<std::filesystem::path> files_of_limb(const std::filesystem::path& fi
   return files;
 }
 
-std::vector<std::string> find_stress_free_shapes(LimbScene& limb, const fem::SolvedMuscleOptions& options) {
-  std::vector<std::string> log;
-  for (LimbMuscle& m : limb.muscles) {
-    if (!m.in_situ) continue;
-    fem::InSituReport report;
-    m.body = fem::find_stress_free(m.body, *m.in_situ, m.body.shape->tendons, limb.range, limb.hinge,
-                                   limb.humerus, options, &report);
-    m.in_situ.reset();
-    log.push_back(fmt::format(
-        "{}: stress-free shape found from the shape in situ by {} equilibria, points within "
-        "{:.2g} um; its distal end lies {:.2g} mm beside the path",
-        m.body.name, report.equilibria, 1e6 * report.greatest_error_m, 1e3 * report.beside_path_m));
-  }
-  return log;
+std::optional<std::string> make_stress_free(LimbMuscle& m, const LimbScene& limb,
+                                            const fem::SolvedMuscleOptions& options) {
+  if (!m.in_situ) return std::nullopt;
+  fem::InSituReport report;
+  m.body = fem::find_stress_free(m.body, *m.in_situ, m.body.shape->tendons, limb.range, limb.hinge,
+                                 limb.humerus, options, &report);
+  m.in_situ.reset();
+  return fmt::format(
+      "{}: stress-free shape found from the shape in situ by {} equilibria, points within "
+      "{:.2g} um; its distal end lies {:.2g} mm beside the path",
+      m.body.name, report.equilibria, 1e6 * report.greatest_error_m, 1e3 * report.beside_path_m);
 }
 
 }  // namespace brachium::pipelines

@@ -30,7 +30,7 @@ struct LimbMuscle {
   bool flexor = true;
   std::string source;
   /// Imported as it is in the arm at body.reference_rad: the body's shape is a first guess until
-  /// find_stress_free_shapes.
+  /// make_stress_free.
   std::optional<data::Mesh> in_situ;
 };
 
@@ -65,8 +65,10 @@ LimbScene read_limb(const std::filesystem::path& file, LimbVariant variant, cons
 /// Meshes and triangle files that a limb file names, those that exist; none of a file that is no limb.
 std::vector<std::filesystem::path> files_of_limb(const std::filesystem::path& file);
 
-/// Stress-free shapes of the muscles that were imported in situ (fem/limb/in_situ.hpp); a line about each.
-std::vector<std::string> find_stress_free_shapes(LimbScene& limb, const fem::SolvedMuscleOptions& options);
+/// Finds the stress-free shape of a muscle of the limb that was imported in situ (fem/limb/in_situ.hpp): costly.
+/// A line about it; none where the muscle is stress-free already.
+std::optional<std::string> make_stress_free(LimbMuscle& muscle, const LimbScene& limb,
+                                            const fem::SolvedMuscleOptions& options);
 
 /// The same from a text; `folder` is what triangle files are relative to.
 LimbScene parse_limb(const std::string& text, const std::string& file_name,

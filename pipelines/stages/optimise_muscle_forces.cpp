@@ -13,17 +13,22 @@
 #include "pipelines/stages/common.hpp"
 #include "pipelines/stages/fem_muscle_map.hpp"
 #include "pipelines/stages/limb_fitted.hpp"
+#include "pipelines/stages/model_options.hpp"
 #include "pipelines/stages/muscle_force_references.hpp"
+#include "pipelines/stages/muscle_moment_references.hpp"
 #include "pipelines/stages/optimise_muscle_forces.hpp"
 
 namespace brachium::pipelines {
 namespace {
 
 using optimise::FreeBodyParameter;
+using optimise::Measure;
 using optimise::MuscleForceFit;
 using optimise::ReferenceForce;
 
 constexpr double degree = std::numbers::pi / 180.0;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Of a table of the options: for this muscle, or for all.
 bool concerns(const Options& o, const std::string& muscle) {
@@ -41,12 +46,13 @@ struct MuscleStudy {
   std::vector<FreeBodyParameter> free;
   std::vector<ReferenceForce> references;
   std::optional<MuscleForceFit> strap, continuum;
-  std::optional<MuscleForceFit>
-      strap_geometry;  ///< with the limb's law; where a parameter of the law is free
+  /// With the limb's law; where a parameter of the law is free.
+  std::optional<MuscleForceFit> strap_geometry, continuum_geometry;
 
   const fem::MuscleBody& fitted() const { return continuum->body; }
 };
 
+/// What the options alone say of a muscle.
 MuscleStudy study_of(const Options& options, const fem::MuscleBody& body) {
   MuscleStudy study;
   study.in_the_limb = study.start = body;
@@ -65,19 +71,38 @@ MuscleStudy study_of(const Options& options, const fem::MuscleBody& body) {
   return study;
 }
 
+void check_references(const MuscleStudy& study) {
+  if (study.references.empty())
+    throw data::InputError("no-references",
+                           fmt::format("muscle `{}` has no references", study.in_the_limb.name),
+                           "add a table [[stage.reference]], or leave the muscle out with `muscles`");
+}
+
+MuscleStudy study_of(const StageContext& context, const PreparedLimb& limb, const fem::MuscleBody& body) {
+  MuscleStudy study = study_of(*context.options, body);
+  for (const MuscleGroup& g : limb.grouping ? limb.grouping->groups : std::vector<MuscleGroup>{}) {
+    if (g.muscle != body.name || !context.maybe_input("moments")) continue;
+    const std::vector<ReferenceForce> more = moment_references(context, g, limb.scene.range);
+    study.references.insert(study.references.end(), more.begin(), more.end());
+  }
+  check_references(study);
+  return study;
+}
+
 void fit(const Options& options, const PreparedLimb& limb,
          const std::function<void(const optimise::Iteration&)>& progress, MuscleStudy& study) {
   const bool rigid = limb.scene.variant == LimbVariant::rigid_tendon;
   fem::MuscleBody from = study.start;
+  std::vector<FreeBodyParameter> geometry;
+  for (const FreeBodyParameter& f : study.free)
+    if (!is_of_the_law(f.name)) geometry.push_back(f);
+  const bool in_parts = !geometry.empty() && geometry.size() < study.free.size();
   if (rigid) {
     optimise::SolveOptions o;
     o.starts = static_cast<std::size_t>(options.integer("strap_starts"));
     study.strap =
         optimise::fit_muscle_forces(from, study.free, study.references, *optimise::strap_force_model(), o);
-    std::vector<FreeBodyParameter> geometry;
-    for (const FreeBodyParameter& f : study.free)
-      if (!is_of_the_law(f.name)) geometry.push_back(f);
-    if (!geometry.empty() && geometry.size() < study.free.size())
+    if (in_parts)
       study.strap_geometry = optimise::fit_muscle_forces(study.in_the_limb, geometry, study.references,
                                                          *optimise::strap_force_model(), o);
     if (options.text("begin_at") == "strap") from = study.strap->body;
@@ -89,24 +114,36 @@ void fit(const Options& options, const PreparedLimb& limb,
   c.states = limb.solving;
   c.states.slopes = false;
   optimise::SolveOptions o;
+  o.solver = optimise::parse_solver(options.text("optimiser"));
   o.max_iterations = static_cast<int>(options.integer("max_iterations"));
+  o.max_evaluations = static_cast<int>(options.integer("max_evaluations"));
   o.cost_tolerance = options.number("cost_tolerance");
   o.progress = progress;
-  study.continuum =
-      optimise::fit_muscle_forces(from, study.free, study.references, *optimise::continuum_force_model(c), o);
+  const auto model = optimise::continuum_force_model(c);
+  if (in_parts && options.boolean("geometry_alone"))
+    study.continuum_geometry = optimise::fit_muscle_forces(
+        study.strap_geometry && options.text("begin_at") == "strap" ? study.strap_geometry->body
+                                                                    : study.in_the_limb,
+        geometry, study.references, *model, o);
+  study.continuum = optimise::fit_muscle_forces(from, study.free, study.references, *model, o);
 }
 
-data::Table force_table(const std::vector<MuscleStudy>& studies) {
-  TableBuilder table("forces");
+/// Reference, continuum and strap, state by state, of the references of one measure.
+data::Table state_table(const std::vector<MuscleStudy>& studies, Measure measure) {
+  const bool forces = measure == Measure::force;
+  const std::string unit = forces ? "N" : "N m", ending = forces ? "_N" : "_N_m";
+  TableBuilder table(forces ? "forces" : "moments");
   table.text("muscle").text("set").number("angle_deg", "deg").number("activation", "1");
-  table.text("fitted").number("reference_N", "N").number("continuum_N", "N").number("strap_N", "N");
+  table.text("fitted").number("reference" + ending, unit).number("continuum" + ending, unit);
+  table.number("strap" + ending, unit);
   for (const MuscleStudy& s : studies) {
     for (std::size_t i = 0; i < s.references.size(); ++i) {
       const ReferenceForce& r = s.references[i];
+      if (r.measure != measure) continue;
       const auto k = static_cast<Eigen::Index>(i);
       table.row({s.start.name, r.set, r.q_rad / degree, r.activation,
-                 std::string(r.weight > 0.0 ? "yes" : "no"), r.force_n, s.continuum->force_n[k],
-                 s.strap ? s.strap->force_n[k] : std::numeric_limits<double>::quiet_NaN()});
+                 std::string(r.weight > 0.0 ? "yes" : "no"), r.value, s.continuum->value[k],
+                 s.strap ? s.strap->value[k] : none});
     }
   }
   return table.take();
@@ -115,15 +152,19 @@ data::Table force_table(const std::vector<MuscleStudy>& studies) {
 data::Table agreement_table(const std::vector<MuscleStudy>& studies) {
   TableBuilder table("agreement");
   table.text("muscle").text("model").text("set").number("states", "1").number("relative_l2", "1");
-  table.number("rms_N", "N").number("worst_N", "N").number("worst_angle_deg", "deg");
-  table.number("worst_activation", "1");
+  table.number("rms_N", "N").number("worst_N", "N").number("rms_N_m", "N m").number("worst_N_m", "N m");
+  table.number("worst_angle_deg", "deg").number("worst_activation", "1");
   for (const MuscleStudy& s : studies) {
     for (const auto& [model, fit] : {std::pair{"continuum", &s.continuum}, std::pair{"strap", &s.strap},
+                                     std::pair{"continuum, the limb's law", &s.continuum_geometry},
                                      std::pair{"strap, the limb's law", &s.strap_geometry}}) {
       if (!fit->has_value()) continue;
-      for (const optimise::ForceAgreement& a : optimise::agreement(s.references, (*fit)->force_n))
+      for (const optimise::ForceAgreement& a : optimise::agreement(s.references, (*fit)->value)) {
+        const bool force = a.measure == Measure::force;
         table.row({s.start.name, std::string(model), a.set, static_cast<double>(a.states), a.relative_l2,
-                   a.rms_n, a.worst_n, a.worst_q_rad / degree, a.worst_activation});
+                   force ? a.rms : none, force ? a.worst : none, force ? none : a.rms, force ? none : a.worst,
+                   a.worst_q_rad / degree, a.worst_activation});
+      }
     }
   }
   return table.take();
@@ -147,23 +188,54 @@ std::vector<std::string> changed_parameters(const Options& options) {
         names.push_back(o.text("parameter"));
     }
   }
-  return names;
+  // In the order in which one after the other can be set (fem/limb/body_parameters.hpp).
+  std::vector<std::string> ordered;
+  for (const fem::BodyParameter& p : fem::body_parameters())
+    if (std::find(names.begin(), names.end(), p.name) != names.end()) ordered.push_back(p.name);
+  return ordered;
+}
+
+/// Where the limb is not scaled, and moments are wired all the same.
+Grouping grouped(const StageContext& context, const std::vector<std::string>& muscles) {
+  const data::Scene& scene = context.need_scene();
+  const StageData* with = context.maybe_input("subject");
+  return group_muscles(*context.options, scene,
+                       coordinate_of(scene, context.options->maybe_text("coordinate").value_or("")),
+                       with ? &subject_of(*with) : nullptr, muscles);
 }
 
 }  // namespace
 
+std::vector<data::Diagnostic> check_muscle_forces(const CheckContext& context) {
+  const Options& options = *context.options;
+  Mistakes mistakes;
+  const std::optional<LimbScene> limb = check_limb(context, mistakes);
+  if (!limb) return std::move(mistakes).list();
+  for (const std::string list : {"reference", "free", "hold"}) {
+    for (const Options& o : options.tables(list))
+      if (const auto name = o.maybe_text("muscle")) mistakes.guarded(o, {}, [&] { limb->muscle(*name); });
+  }
+  if (!mistakes.empty()) return std::move(mistakes).list();
+  mistakes.guarded(options, {}, [&] {
+    for (const std::string& name : chosen_muscles(options, *limb))
+      mistakes.guarded(options, {}, [&] { study_of(options, limb->muscle(name).body); });
+  });
+  return std::move(mistakes).list();
+}
+
 void run_muscle_forces(const StageContext& context, StageOutput& out) {
   const Options& options = *context.options;
-  const PreparedLimb limb = prepare_limb(context);
-  std::vector<std::string> names;
-  for (const LimbMuscle& m : limb.scene.muscles) names.push_back(m.body.name);
+  PreparedLimb limb = prepare_limb(context);
   for (const std::string list : {"reference", "free", "hold"}) {
     for (const Options& o : options.tables(list))
       if (const auto name = o.maybe_text("muscle")) limb.scene.muscle(*name);  // throws where there is none
   }
-  if (!options.texts("muscles").empty()) names = data::match_names(options.texts("muscles"), names, "muscle");
+  const std::vector<std::string> names = chosen_muscles(options, limb.scene);
+  make_stress_free(limb, names, context);
+  if (context.maybe_input("moments") && !limb.grouping) limb.grouping = grouped(context, names);
   std::vector<MuscleStudy> studies;
-  for (const std::string& name : names) studies.push_back(study_of(options, limb.scene.muscle(name).body));
+  for (const std::string& name : names)
+    studies.push_back(study_of(context, limb, limb.scene.muscle(name).body));
 
   std::mutex one_at_a_time;
   data::parallel_for(studies.size(), context.threads, [&](std::size_t k) {
@@ -188,11 +260,16 @@ void run_muscle_forces(const StageContext& context, StageOutput& out) {
                "raise `max_iterations`, or free fewer parameters");
     out.attributes["summary " + s.start.name] = s.continuum->summary.message();
   }
-  out.tables["forces"] = force_table(studies);
+  out.tables["forces"] = state_table(studies, Measure::force);
+  if (data::Table moments = state_table(studies, Measure::moment); moments.rows() > 0)
+    out.tables["moments"] = std::move(moments);
   out.tables["agreement"] = agreement_table(studies);
   out.tables["verdicts"] = verdicts_of(studies, &MuscleStudy::continuum);
   out.tables["strap_verdicts"] = verdicts_of(studies, &MuscleStudy::strap);
+  if (options.boolean("geometry_alone"))
+    out.tables["geometry_verdicts"] = verdicts_of(studies, &MuscleStudy::continuum_geometry);
   out.tables["fitted"] = fitted_table(bodies, changed_parameters(options));
+  out.attributes["solver"] = options.text("optimiser");
   out.attributes["variant"] = to_string(limb.scene.variant);
 }
 

@@ -159,6 +159,12 @@ std::size_t positions(const Study& s, StageOutput& out) {
       .number("remaining_moment_N_m", "N m")
       .number("remaining_load_N", "N")
       .number("iterations", "1");
+  TableBuilder iterations("convergence of activations");
+  iterations.text("case")
+      .number("iteration", "1")
+      .number("activation", "1")
+      .number("moment_N_m", "N m")
+      .number("step", "1");
   std::size_t without = 0;
   const std::vector<Options>& cases = s.options.tables("position");
   for (std::size_t c = 0; c < cases.size(); ++c) {
@@ -173,8 +179,92 @@ std::size_t positions(const Study& s, StageOutput& out) {
                held.activation ? held.dactivation_dangle * deg : none,
                held.activation ? held.dactivation_dload : none, held.nearest, held.remaining_moment_N_m,
                held.remaining_load_N.value_or(none), static_cast<double>(held.history.size())});
+    for (const optimise::ConvergenceRow& r : held.history)
+      iterations.row({name, static_cast<double>(r.iteration), r.at, r.moment_N_m, r.step});
   }
+  out.tables["position_convergence"] = iterations.take();
   out.tables["positions"] = table.take();
+  return without;
+}
+
+/// What is given over time, at the frames that are computed.
+struct Course {
+  std::vector<double> knots_s, time_s;
+  Eigen::VectorXd load_N;
+  Eigen::MatrixXd activation;  ///< n_m x n_t
+};
+
+Course course_of(const Options& o, const std::string& what, std::size_t muscles, bool may_be_steady) {
+  Course out;
+  out.knots_s = o.numbers("time_s");
+  const std::vector<double>&knots = out.knots_s, &loads = o.numbers("load_N"), &a = o.numbers("activation");
+  const bool steady = may_be_steady && loads.size() == 1, constant = a.size() == muscles;
+  if (knots.size() < 2 || !std::is_sorted(knots.begin(), knots.end(), std::less_equal<>()) ||
+      (!steady && loads.size() != knots.size()) || (!constant && a.size() != muscles * knots.size())) {
+    throw data::InputError("wrong-size",
+                           fmt::format("{} has {} times, {} loads and {} activations for {} muscles", what,
+                                       knots.size(), loads.size(), a.size(), muscles),
+                           "times increase, with a load at every time (a motion may have one load at all of "
+                           "them); activations are one for each "
+                           "muscle, or for each muscle at every time, times first");
+  }
+  out.time_s = fem::equidistant(knots.front(), knots.back(), static_cast<std::size_t>(o.integer("frames")));
+  const auto n = static_cast<Eigen::Index>(out.time_s.size());
+  out.load_N.resize(n);
+  out.activation.resize(static_cast<Eigen::Index>(muscles), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double t = out.time_s[static_cast<std::size_t>(i)];
+    out.load_N(i) = steady ? loads.front() : at_time(knots, loads, t);
+    for (std::size_t k = 0; k < muscles; ++k) {
+      const auto first = a.begin() + static_cast<std::ptrdiff_t>(k * knots.size());
+      out.activation(static_cast<Eigen::Index>(k), i) =
+          constant ? a[k] : at_time(knots, {first, first + static_cast<std::ptrdiff_t>(knots.size())}, t);
+    }
+  }
+  return out;
+}
+
+std::size_t motions(const Study& s, StageOutput& out) {
+  TableBuilder table("activations along a motion");
+  table.text("case")
+      .number("time_s", "s")
+      .number("angle_deg", "deg")
+      .number("load_N", "N")
+      .text("sought")
+      .text("outcome")
+      .number("activation", "1")
+      .number("dactivation_dangle_per_deg", "1/deg")
+      .number("nearest_activation", "1")
+      .number("remaining_moment_N_m", "N m")
+      .number("iterations", "1");
+  std::size_t without = 0;
+  const std::vector<Options>& cases = s.options.tables("motion");
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    const Options& o = cases[c];
+    const std::string name = case_name(o, c);
+    const Course course = course_of(o, fmt::format("motion `{}`", name), s.muscles.size(), true);
+    const std::vector<double>& angles = o.numbers("angle_deg");
+    if (angles.size() != course.knots_s.size())
+      throw data::InputError(
+          "wrong-size",
+          fmt::format("motion `{}` has {} times and {} angles", name, course.knots_s.size(), angles.size()),
+          "give an angle at every time");
+    Eigen::VectorXd angle(course.load_N.size());
+    for (Eigen::Index i = 0; i < angle.size(); ++i)
+      angle(i) = at_time(course.knots_s, angles, course.time_s[static_cast<std::size_t>(i)]) * deg;
+    const auto frames = optimise::hold(s.system, course.time_s, angle, muscle_index(s, o.text("sought")),
+                                       course.activation, course.load_N, s.scenario);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const optimise::HeldAngle& held = frames[i].held;
+      without += !held.activation;
+      table.row({name, frames[i].time_s, angle(static_cast<Eigen::Index>(i)) / deg,
+                 course.load_N(static_cast<Eigen::Index>(i)), o.text("sought"),
+                 held.activation ? "held" : "none in range", held.activation.value_or(none),
+                 held.activation ? held.dactivation_dangle * deg : none, held.nearest,
+                 held.remaining_moment_N_m, static_cast<double>(held.history.size())});
+    }
+  }
+  out.tables["motions"] = table.take();
   return without;
 }
 
@@ -193,38 +283,12 @@ void histories(const Study& s, StageOutput& out) {
   for (std::size_t c = 0; c < cases.size(); ++c) {
     const Options& o = cases[c];
     const std::string name = case_name(o, c);
-    const std::vector<double>&knots = o.numbers("time_s"), &loads = o.numbers("load_N"),
-          &a = o.numbers("activation");
-    const std::size_t n_m = s.muscles.size();
-    if (knots.size() < 2 || !std::is_sorted(knots.begin(), knots.end(), std::less_equal<>()) ||
-        loads.size() != knots.size() || (a.size() != n_m && a.size() != n_m * knots.size())) {
-      throw data::InputError(
-          "wrong-size",
-          fmt::format("history `{}` has {} times, {} loads and {} activations for {} muscles", name,
-                      knots.size(), loads.size(), a.size(), n_m),
-          "times increase, with a load for each; activations are one for each muscle, or for each muscle at "
-          "every time, times first");
-    }
-    const std::vector<double> time =
-        fem::equidistant(knots.front(), knots.back(), static_cast<std::size_t>(o.integer("frames")));
-    const auto n = static_cast<Eigen::Index>(time.size());
-    Eigen::VectorXd load(n);
-    Eigen::MatrixXd activation(static_cast<Eigen::Index>(n_m), n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double t = time[static_cast<std::size_t>(i)];
-      load(i) = at_time(knots, loads, t);
-      for (std::size_t k = 0; k < n_m; ++k) {
-        const bool constant = a.size() == n_m;
-        const std::vector<double> series =
-            constant ? std::vector<double>{a[k]}
-                     : std::vector<double>(a.begin() + static_cast<std::ptrdiff_t>(k * knots.size()),
-                                           a.begin() + static_cast<std::ptrdiff_t>((k + 1) * knots.size()));
-        activation(static_cast<Eigen::Index>(k), i) = constant ? a[k] : at_time(knots, series, t);
-      }
-    }
+    const Course course = course_of(o, fmt::format("history `{}`", name), s.muscles.size(), false);
+    const std::vector<double>& time = course.time_s;
+    const Eigen::VectorXd& load = course.load_N;
     const optimise::AngleHistory history =
-        optimise::follow(s.system, time, activation, load, o.number("start_deg") * deg, s.scenario);
-    for (Eigen::Index i = 0; i < n; ++i) {
+        optimise::follow(s.system, time, course.activation, load, o.number("start_deg") * deg, s.scenario);
+    for (Eigen::Index i = 0; i < load.size(); ++i) {
       const optimise::Frame& f = history.frames[static_cast<std::size_t>(i)];
       table.row({name, f.time_s, load(i), f.angle_rad / deg, optimise::frame_kind_name(f.kind), f.moment_N_m,
                  f.dangle_dload_rad_per_N / deg, static_cast<double>(f.iterations)});
@@ -262,6 +326,7 @@ void run_scenarios(const StageContext& context, StageOutput& out) {
     found.without += here.without;
     found.unstable += here.unstable;
     not_held += positions(study, one);
+    not_held += motions(study, one);
     histories(study, one);
     for (auto& [name, table] : one.tables) append_under(system.name, std::move(table), out.tables[name]);
     names.push_back(system.name);

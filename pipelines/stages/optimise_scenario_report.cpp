@@ -246,6 +246,26 @@ report::Grid side_by_side(const data::Table& table, const std::string& caption) 
   return grid;
 }
 
+// A column over time, a plot a case, a line a system.
+report::PlotRow over_time(const data::Table& table, const std::string& column, const std::string& axis) {
+  report::PlotRow row;
+  row.min_width_px = 420.0;
+  for (const std::string& name : names_in(table, "case")) {
+    Plot plot{name, "time [s]", axis};
+    for (const std::string& system : names_in(table, "system")) {
+      Series series{system, {}, {}};
+      for (const std::size_t i : rows_of(table, "case", name)) {
+        if (table.texts("system")[i] != system) continue;
+        series.x.push_back(table.numbers("time_s")[i]);
+        series.y.push_back(table.numbers(column)[i]);
+      }
+      plot.series.push_back(std::move(series));
+    }
+    row.plots.push_back(std::move(plot));
+  }
+  return row;
+}
+
 void fill_system(const std::map<std::string, data::Table>& tables, report::Section& section) {
   const auto table = [&](const std::string& name) -> const data::Table& { return tables.at(name); };
   report::GridOptions grid = grid_options();
@@ -271,32 +291,20 @@ void fill_system(const std::map<std::string, data::Table>& tables, report::Secti
         "Position-driven: the activation of one muscle that holds an angle. Where there is none, the nearest "
         "activation, the moment that is left, and the further load that would hold it."});
     section.blocks.push_back(report::make_grid(table("positions"), grid));
+    report::Section iterations;
+    iterations.blocks.push_back(report::make_grid(table("position_convergence"), grid));
+    section.blocks.push_back(report::Details{"every iteration of the activations", {iterations}});
+  }
+  if (table("motions").rows() > 0) {
+    section.blocks.push_back(
+        report::Paragraph{"Position-driven over time: the activation that holds each angle."});
+    section.blocks.push_back(over_time(table("motions"), "nearest_activation", "activation"));
   }
   if (table("histories").rows() > 0) {
     section.blocks.push_back(report::Paragraph{"Force-driven: where the load takes the joint."});
     section.blocks.push_back(history_plots(table("histories")));
     if (table("events").rows() > 0) section.blocks.push_back(report::make_grid(table("events"), grid));
   }
-}
-
-// Angles over time of one history, a line a system.
-report::PlotRow histories_together(const data::Table& table) {
-  report::PlotRow row;
-  row.min_width_px = 420.0;
-  for (const std::string& name : names_in(table, "case")) {
-    Plot plot{name, "time [s]", "angle [deg]"};
-    for (const std::string& system : names_in(table, "system")) {
-      Series series{system, {}, {}};
-      for (const std::size_t i : rows_of(table, "case", name)) {
-        if (table.texts("system")[i] != system) continue;
-        series.x.push_back(table.numbers("time_s")[i]);
-        series.y.push_back(table.numbers("angle_deg")[i]);
-      }
-      plot.series.push_back(std::move(series));
-    }
-    row.plots.push_back(std::move(plot));
-  }
-  return row;
 }
 
 }  // namespace
@@ -314,8 +322,10 @@ void fill_scenario_report(const ReportContext& context, report::Section& section
           side_by_side(output.tables.at("equilibria"), "Equilibrium angles [deg], all roots"));
     if (output.tables.at("positions").rows() > 0)
       section.blocks.push_back(side_by_side(output.tables.at("positions"), "Activations that hold an angle"));
+    if (output.tables.at("motions").rows() > 0)
+      section.blocks.push_back(over_time(output.tables.at("motions"), "nearest_activation", "activation"));
     if (output.tables.at("histories").rows() > 0)
-      section.blocks.push_back(histories_together(output.tables.at("histories")));
+      section.blocks.push_back(over_time(output.tables.at("histories"), "angle_deg", "angle [deg]"));
   }
   for (const std::string& system : systems) {
     std::map<std::string, data::Table> own;

@@ -44,7 +44,8 @@ void add_optimise_scenario(Catalogue& catalogue) {
       "With several "
       "maps or lever arms the same questions are asked of each system, and answers stand side by side. "
       "Three questions are asked of it. Activation-driven (`equilibrium`): all angles at which given "
-      "activations hold a load, with their stability. Position-driven (`position`): the activation "
+      "activations hold a load, with their stability. Position-driven (`position`, over time `motion`): the "
+      "activation "
       "of one muscle that holds an angle. Force-driven (`history`): where a load history takes the joint, "
       "along stable branches, with jumps where one ends. That there is no solution in range is a "
       "result, with the nearest there is. Derivatives come from the implicit function theorem; iterations "
@@ -60,6 +61,8 @@ void add_optimise_scenario(Catalogue& catalogue) {
   starts.fallback = std::vector<double>{80.0, 40.0, 120.0};
   const OptionSpec name = text_option("name", "", "name of the case; its number where absent");
   const OptionSpec load = number_option("load_N", "N", 0.0, {}, "load on the forearm, above 0 extends");
+  OptionSpec loads = numbers_of("load_N", "N", "load at these times, or one at all of them");
+  loads.fallback = std::vector<double>{0.0};
   OptionSpec arms = texts_option("lever_arm", {"virtual_work"}, "of the maps' muscles, one system each");
   arms.allowed = moment_methods();
   spec.inputs = {{"map", PortType::tables, "muscle maps instead of `muscle` (fem.muscle_map)", true, true}};
@@ -90,6 +93,17 @@ void add_optimise_scenario(Catalogue& catalogue) {
                 {name, required(number_option("angle_deg", "deg", 0.0, {}, "angle to be held")),
                  required(text_option("sought", "", "muscle whose activation is sought")), activation, load},
                 "position-driven cases"),
+      tables_of(
+          "motion",
+          {name, numbers_of("time_s", "s", "times of the knots"),
+           numbers_of("angle_deg", "deg", "angle to be held at these times, linear in between"),
+           required(text_option("sought", "", "muscle whose activation is sought")),
+           numbers_of(
+               "activation", "",
+               "one for each muscle, or for each muscle one at every time; where the muscle sought begins",
+               between(0, 1)),
+           loads, integer_option("frames", 51, between(2, 1e6), "times that are computed")},
+          "position-driven cases over time"),
       tables_of("history",
                 {name, numbers_of("time_s", "s", "times of the load's knots"),
                  numbers_of("load_N", "N", "load at these times, linear in between"),

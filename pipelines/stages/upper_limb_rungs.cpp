@@ -76,10 +76,6 @@ class SurrogateRung final : public LimbRung {
 class SolvedRung final : public LimbRung {
  public:
   SolvedRung(PreparedLimb limb, std::string method) : limb_(std::move(limb)), method_(std::move(method)) {
-    if (method_ == "tdm")
-      throw data::InputError("contradiction",
-                             "the lever arm by tendon displacement needs passive lengths at many angles",
-                             "wire `map` to a stage fem.muscle_map, or choose another `lever_arm`");
     limb_.solving.slopes = false;
     for (const LimbMuscle& m : limb_.scene.muscles) names_.push_back(m.body.name);
     states_.resize(names_.size());
@@ -116,9 +112,11 @@ class SolvedRung final : public LimbRung {
   fem::MuscleState at(std::size_t muscle, const LimbFrames& frames, std::size_t i, double activation) {
     try {
       auto& states = states_[muscle];
-      if (!states)
+      if (!states) {
+        make_stress_free(limb_.scene.muscles[muscle], limb_.scene, limb_.solving);
         states = std::make_unique<fem::MuscleStates>(limb_.scene.muscles[muscle].body, limb_.scene.range,
                                                      limb_.scene.hinge, limb_.scene.humerus, limb_.solving);
+      }
       return fem::map_state(states->solve_state(frames.angle_rad[i], activation), limb_.scene.hinge);
     } catch (const data::ConvergenceFailure& failure) {
       data::ConvergenceFailure::Details details = failure.details();
@@ -136,6 +134,13 @@ class SolvedRung final : public LimbRung {
 
 }  // namespace
 
+void check_lever_arm(const Options& options) {
+  if (options.has("limb") && options.text("lever_arm") == "tdm")
+    throw data::InputError("contradiction",
+                           "the lever arm by tendon displacement needs passive lengths at many angles",
+                           "wire `map` to a stage fem.muscle_map, or choose another `lever_arm`");
+}
+
 std::unique_ptr<LimbRung> limb_rung(const StageContext& context) {
   const StageData* map = context.maybe_input("map");
   const bool limb = context.options->has("limb");
@@ -145,6 +150,7 @@ std::unique_ptr<LimbRung> limb_rung(const StageContext& context) {
         limb ? "muscles come from the input `map` or from the file `limb`, not from both"
              : "there are no muscles: neither the input `map` nor the file `limb`",
         "wire `map` to a stage fem.muscle_map (surrogates), or name a limb (every frame is solved)");
+  check_lever_arm(*context.options);
   const std::string method = context.options->text("lever_arm");
   if (map) return std::make_unique<SurrogateRung>(limb_map_of(*map), method);
   return std::make_unique<SolvedRung>(prepare_limb(context), method);

@@ -43,8 +43,11 @@ class LimbRung {
   virtual MuscleFrames evaluate(std::size_t muscle, const LimbFrames& frames) = 0;
 };
 
+/// Throws InputError("contradiction") where the lever arm needs a map and a limb is given.
+void check_lever_arm(const Options& options);
+
 /// The input `map`, or the option `limb`. Throws InputError("contradiction") or ("missing-key") where not
-/// exactly one of them is given.
+/// exactly one of them is given, and as check_lever_arm.
 std::unique_ptr<LimbRung> limb_rung(const StageContext& context);
 
 }  // namespace brachium::pipelines

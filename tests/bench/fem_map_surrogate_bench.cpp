@@ -3,7 +3,7 @@
 /// Run: fem_map_surrogate_bench LIMB_FILE [CELLS along the belly, default 6] [THREADS, default 2]
 ///
 /// Asked (Valentin 2019, doi:10.18419/opus-10504, ch. 7, sparse grids of a like number of states): 3.5
-/// permille (biceps), 3.3 (triceps), .886 deg.
+/// permille (biceps), 3.3 (triceps), .886 deg, all of them by one surrogate. Exit code 1 where none reaches them.
 
 #include <fmt/format.h>
 
@@ -104,11 +104,14 @@ int main(int argc, char** argv) {
     fmt::print("{:9} 21 x 9 states with slopes: relative L2 {:.3f} permille\n", m.name,
                1e3 * e.outputs[0].relative_l2);
   }
+  bool reached = false;
   const auto judge = [&](const std::string& name, std::size_t states,
                          const std::vector<fem::Surrogate>& made) {
     std::string line = fmt::format("{:34} {:3} ", name, states);
+    bool close = states <= 49;
     for (std::size_t m = 0; m < made.size(); ++m) {
       const auto e = fem::error_at(made[m], unseen[m].values);
+      close = close && e.outputs[0].relative_l2 <= (unseen[m].name == "triceps" ? 3.3e-3 : 3.5e-3);
       line += fmt::format(" {:8.3f} {:8.3f}", 1e3 * e.outputs[0].relative_l2, 1e3 * e.outputs[1].relative_l2);
     }
     double worst = 0.0;
@@ -122,6 +125,7 @@ int main(int argc, char** argv) {
           worst = std::max(worst, std::abs(a[k] - b[k])), ++pairs;
       }
     }
+    reached = reached || (close && different == 0 && worst <= 0.886 * degree);
     fmt::print("{} {:8.3f} deg of {} equilibria, {} pairs of activations with another number of them\n", line,
                worst / degree, pairs, different);
   };
@@ -142,5 +146,6 @@ int main(int argc, char** argv) {
       judge(fmt::format("{} x {} {}", n, m, made.front().method()), nodes.size(), made);
     }
   }
-  return 0;
+  if (!reached) fmt::print(stderr, "no surrogate of at most 49 states reaches what is asked\n");
+  return reached ? 0 : 1;
 }

@@ -52,6 +52,27 @@ TEST(ScenarioStage, FindsTheActivationThatHoldsAnAngleOrSaysWhatIsMissing) {
   EXPECT_NEAR(t.numbers("remaining_load_N")[1], -10.0, 1e-9);
 }
 
+TEST(ScenarioStage, FindsTheActivationsOfAMotionAndHowItCameToThem) {
+  const StageData data = run("optimise.scenario", system_of_two + R"(motion = [
+    { name = "bend", time_s = [0, 1], angle_deg = [30, 60], sought = "flexor", activation = [0, 0.2], load_N = [10], frames = 4 },
+    { name = "too much", time_s = [0, 1], angle_deg = [30, 90], sought = "flexor", activation = [0, 0.2, 0.2, 0.2], load_N = [10, 30], frames = 4 }]
+position = [{ name = "30 deg", angle_deg = 30, sought = "flexor", activation = [0, 0.2], load_N = 10 }])");
+  const data::Table& t = data.tables.at("motions");
+  ASSERT_EQ(t.rows(), 8u);
+  for (std::size_t i = 0; i < 4; ++i) {  // 3 (2 a - 0.2) = 3 sin q
+    const double q = (30.0 + 10.0 * static_cast<double>(i)) * 3.14159265358979 / 180.0;
+    EXPECT_NEAR(t.numbers("activation")[i], 0.5 * (std::sin(q) + 0.2), 1e-6) << i;
+    EXPECT_NEAR(t.numbers("dactivation_dangle_per_deg")[i], 0.5 * std::cos(q) * 3.14159265358979 / 180.0,
+                1e-6);
+  }
+  EXPECT_EQ(t.texts("outcome")[7], "none in range");
+  EXPECT_NEAR(t.numbers("remaining_moment_N_m")[7], 3.0 * (2.0 - 0.2) - 9.0, 1e-9);
+  const data::Table& iterations = data.tables.at("position_convergence");
+  ASSERT_GE(iterations.rows(), 2u);
+  EXPECT_NEAR(iterations.numbers("activation").back(), 0.35, 1e-6);
+  EXPECT_LT(std::abs(iterations.numbers("moment_N_m").back()), 1e-5);
+}
+
 TEST(ScenarioStage, FollowsALoadAndNamesTheEndOfTheRange) {
   const StageData data = run("optimise.scenario", system_of_two + R"(history = [
     { name = "load", time_s = [0, 1, 2], load_N = [10, 6, 4], activation = [0.25, 0.0], start_deg = 20, frames = 21 }])");
@@ -74,6 +95,10 @@ TEST(ScenarioStage, RefusesTablesThatDoNotFit) {
       "unknown-value");
   EXPECT_EQ(code_of(system_of_two + "history = [{ time_s = [0, 1], load_N = [1], activation = [0, 0] }]"),
             "wrong-size");
+  EXPECT_EQ(
+      code_of(system_of_two +
+              "motion = [{ time_s = [0, 1], angle_deg = [30], sought = \"flexor\", activation = [0, 0] }]"),
+      "wrong-size");
   EXPECT_EQ(code_of(system_of_two + "lower_deg = 0.0\nequilibrium = [{ activation = [0, 0] }]"),
             "outside-surrogate");
 }

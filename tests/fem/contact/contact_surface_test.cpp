@@ -40,6 +40,30 @@ INSTANTIATE_TEST_SUITE_P(Contact, EveryCell,
                                          Formulation::p2_p1_taylor_hood),
                          [](const auto& instance) { return to_string(instance.param); });
 
+TEST_P(EveryCell, PressureAtTheMeshesPointsHasTheContactForceOfPenaltyAndMultipliers) {
+  const Body b = body(GetParam());
+  // Against a plane the force is the integral of the pressure.
+  const ContactSurface contact(*b.discretisation, "z1",
+                               HalfSpace{Vector3d(0.0, 0.0, 1.0), Vector3d(0.0, 0.0, -1.0)}, {500.0, 0.0, 4});
+  const Eigen::VectorXd lambda = Eigen::VectorXd::LinSpaced(contact.point_count(), 0.0, 40.0);
+  for (const Eigen::VectorXd& multiplier : {Eigen::VectorXd(), lambda}) {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(b.dofs.size());
+    const double expected = contact.add_force(b.dofs, {}, multiplier, force).force_n.norm();
+    ASSERT_GT(expected, 0.0);
+    const NodalPressure at = contact.at_mesh_points(b.dofs, {}, multiplier);
+    EXPECT_NEAR(at.area_m2.dot(at.pressure_pa), expected, 1e-12 * expected);
+    EXPECT_NEAR(at.area_m2.sum(), 1.0, 1e-12) << "m2, of the face";
+    EXPECT_GE(at.pressure_pa.minCoeff(), 0.0);
+  }
+  // An even pressure is the same at every point.
+  const NodalPressure even = contact.at_mesh_points(Eigen::VectorXd::Zero(b.dofs.size()), {},
+                                                    Eigen::VectorXd::Constant(contact.point_count(), 30.0));
+  for (Eigen::Index p = 0; p < even.area_m2.size(); ++p)
+    if (even.area_m2[p] > 0.0) {
+      EXPECT_NEAR(even.pressure_pa[p], 30.0, 1e-11);
+    }
+}
+
 TEST_P(EveryCell, ForceIsTheDerivativeOfTheEnergyAndTheTangentOfTheForce) {
   const Body b = body(GetParam());
   for (const bool multipliers : {false, true}) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "fem/limb/muscle_reading.hpp"
 #include "fem/limb/upper_limb.hpp"
 
 // The triceps slides along the humerus from 10 to 150 deg and back.
@@ -88,6 +89,37 @@ TEST(ContactSweep, PenetratesNoMoreThanItsTolerance) {
     }
   }
   EXPECT_GT(greatest, 10.0 * tolerance) << "the penalty alone does not keep it";
+}
+
+TEST(ContactSweep, PressureThatIsShownIsThatOfTheContactForceWithMultipliersToo) {
+  std::vector<double> shown;
+  for (const double tolerance : {0.0, 1e-5}) {
+    MuscleStates states = triceps(tolerance);
+    const SolvedMuscle& s = states.solve_state(60.0 * degree, 1.0);
+    const Configuration& now = states.solved(60.0 * degree, 1.0).configuration;
+    const Problem& problem = states.problem();
+    const Discretisation discretisation(problem.mesh, problem.formulation);
+    const Eigen::VectorXd pressure = contact_pressure_pa(problem, discretisation, now);
+    EXPECT_GE(pressure.minCoeff(), 0.0);
+    Eigen::Index first = 0;
+    double over_points = 0.0, resultants = 0.0;
+    for (const Contact& c : problem.contacts) {
+      const ContactSurface surface(discretisation, c.surface, c.body, {c.penalty_pa_per_m, c.smoothing_m});
+      const Eigen::VectorXd multiplier =
+          tolerance > 0.0 ? Eigen::VectorXd(now.contact_multiplier.segment(first, surface.point_count()))
+                          : Eigen::VectorXd();
+      first += surface.point_count();
+      const ContactPoints points = surface.points(now.dofs, {}, multiplier);
+      over_points += points.area_m2.dot(points.pressure_pa);
+      if (&c == &problem.contacts.front())
+        shown.push_back(surface.at_mesh_points(now.dofs, {}, multiplier).area_m2.dot(pressure));
+    }
+    for (const BoneContact& c : s.contacts) resultants += c.force_n;
+    EXPECT_GT(resultants, 10.0);
+    EXPECT_NEAR(shown.back(), over_points, 1e-12 * over_points) << tolerance;
+    EXPECT_GE(shown.back(), resultants) << "directions differ over the surface";
+  }
+  EXPECT_NEAR(shown[1], shown[0], 0.3 * shown[0]) << "held by multipliers as by the penalty";
 }
 
 }  // namespace

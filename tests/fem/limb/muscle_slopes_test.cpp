@@ -69,6 +69,30 @@ TEST(MuscleSlopes, ByAngleAreThoseOfNeighbouringStates) {
   }
 }
 
+// States are known to the tolerance of their contact only, and so are differences of them.
+TEST(MuscleSlopes, WithContactToAToleranceAreThoseOfNeighbouringStates) {
+  LimbMesh coarse;
+  coarse.belly_cells = 4;
+  const UpperLimb arm = generic_arm(coarse);
+  SolvedMuscleOptions options;
+  options.contact_tolerance_m = 1e-5;
+  MuscleStates states(arm.triceps, arm.range, arm.hinge, arm.humerus, options);
+  constexpr double h = 0.04;
+  const double q = 60.0 * degree;
+  const SolvedMuscle here = states.solve_state(q, 0.5);
+  ASSERT_GT(here.contacts.front().force_n, 10.0);
+  const SolvedMuscle below = states.solve_state(q - h, 0.5), above = states.solve_state(q + h, 0.5),
+                     weaker = states.solve_state(q, 0.5 - h), stronger = states.solve_state(q, 0.5 + h);
+  const Difference angle = between(below, above, 2 * h), activation = between(weaker, stronger, 2 * h);
+  const auto near = [](double slope, double difference, double size) {
+    EXPECT_NEAR(slope, difference, 0.01 * size);
+  };
+  near(here.force_slope_n.by_q, angle.force, here.force_n);
+  near(here.moment_slope_n_m.by_q, angle.moment, std::abs(here.moment_n_m));
+  near(here.force_slope_n.by_activation, activation.force, here.force_n);
+  near(here.moment_slope_n_m.by_activation, activation.moment, std::abs(here.moment_n_m));
+}
+
 TEST(MuscleSlopes, AtTheEndsOfTheRangeAreThoseOfTheRange) {
   MuscleStates states = muscle(true);
   constexpr double h = 0.01;
