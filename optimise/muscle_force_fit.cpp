@@ -50,8 +50,8 @@ class Problem final : public LeastSquaresProblem {
     const auto m = static_cast<Eigen::Index>(references.size());
     reference_.resize(m);
     scale_.resize(m);
-    std::map<std::string, double> square;
-    for (const ReferenceForce& r : references) square[r.set] += r.weight * r.value * r.value;
+    std::map<std::pair<std::string, Measure>, double> square;
+    for (const ReferenceForce& r : references) square[{r.set, r.measure}] += r.weight * r.value * r.value;
     const auto sets =
         std::count_if(square.begin(), square.end(), [](const auto& s) { return s.second > 0.0; });
     if (sets == 0) {
@@ -61,7 +61,7 @@ class Problem final : public LeastSquaresProblem {
     for (Eigen::Index i = 0; i < m; ++i) {
       const ReferenceForce& r = references[static_cast<std::size_t>(i)];
       reference_[i] = r.value;
-      const double whole = static_cast<double>(sets) * square.at(r.set);
+      const double whole = static_cast<double>(sets) * square.at({r.set, r.measure});
       scale_[i] = r.weight > 0.0 && whole > 0.0 ? std::sqrt(r.weight / whole) : 0.0;
     }
   }

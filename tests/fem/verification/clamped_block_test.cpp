@@ -88,6 +88,48 @@ INSTANTIATE_TEST_SUITE_P(Formulations, ClampedBlockForce,
                                          Formulation::p2b_p1_discontinuous),
                          named_by_formulation);
 
+// Larger stretch, where fibres at the clamped edges stiffen and the limit comes slowly (1.3: 1.24801 N), and no
+// fibres at all (.40494 N in the limit).
+TEST(ClampedBlock, PassiveForcesAgreeWithAnIndependentCodeOnTheSameMesh) {
+  const auto passive = [](double stretch, double fibres) {
+    Problem problem = clamped_block(Formulation::q2_q1_taylor_hood, {16, 4, 4}, stretch, {});
+    MuscleTendon m = block_muscle();
+    m.muscle.c3_pa *= fibres;
+    m.tendon.c3_pa *= fibres;
+    problem.materials = {{m, {VolumetricLaw::quadratic, incompressible}}};
+    return forces(problem, ordinary())[0];
+  };
+  EXPECT_NEAR(passive(1.1, 1.0), 0.4060482, 1e-6);
+  EXPECT_NEAR(passive(1.2, 1.0), 0.7269221, 1e-6);
+  EXPECT_NEAR(passive(1.3, 1.0), 1.2598628, 1e-6);
+  EXPECT_NEAR(passive(1.1, 0.0), 0.40494, 3e-3 * 0.40494);
+}
+
+// 15.784 N on every mesh; a stable state by the independent code's count too.
+TEST(ClampedBlock, ContractionAtTheTopOfTheForceLengthCurveAgreesInForceAndStability) {
+  for (const auto& [cells, force] :
+       {std::pair{std::array{8, 2, 2}, 15.7820133}, std::pair{std::array{16, 4, 4}, 15.7840725}}) {
+    std::vector<std::string> verdicts;
+    SolveOptions options = ordinary();
+    options.on_instability = "report";
+    const std::vector<double> f =
+        forces(clamped_block(Formulation::q2_q1_taylor_hood, cells, 1.2, {0.5}), options, &verdicts);
+    EXPECT_NEAR(f[1], force, 1e-5);
+    EXPECT_EQ(verdicts[1], "stable");
+  }
+}
+
+// Where plain Newton is lost: what is reached is a stable equilibrium of the block itself, nothing viscous left.
+TEST(ClampedBlock, ContinuationGetsThroughWhereNewtonIsLost) {
+  for (const auto& [stretch, activation] : {std::pair{1.2, 1.0}, std::pair{1.3, 0.25}}) {
+    const Solved solved =
+        run(clamped_block(Formulation::q2_p1_discontinuous, {8, 2, 2}, stretch, {activation}), ordinary());
+    EXPECT_EQ(solved.summary.steps.back().stability.verdict, "stable") << stretch;
+    EXPECT_LE(solved.summary.steps.back().relative_residual, 1e-8) << stretch;
+    EXPECT_NEAR(solved.reaction("x1")[0], -solved.reaction("x0")[0], 1e-5) << stretch;
+  }
+}
+
 // At stretch 1 nothing moves but the pressure: 22.307012 N times the activation, exactly.
 TEST(ClampedBlock, ForceAtRestLengthIsExact) {
   for (const Formulation formulation : {Formulation::q2_q1_taylor_hood, Formulation::q2_p1_discontinuous}) {
