@@ -17,9 +17,9 @@ const Values& find(const std::vector<ParameterSet<Values>>& sets, const std::str
                          data::suggest(name, names));
 }
 
-MuscleTendon sprenger(const std::string& bell, double optimal_stretch) {
+MuscleTendon sprenger(const std::string& muscle, const std::string& bell, double optimal_stretch) {
   MuscleTendon m;
-  m.muscle = fibrous_tissue_named("sprenger_muscle");
+  m.muscle = fibrous_tissue_named(muscle);
   m.tendon = fibrous_tissue_named("sprenger_tendon");
   m.max_stress_pa = 0.3e6;
   m.force_length = force_length_named(bell, optimal_stretch);
@@ -36,6 +36,10 @@ const std::vector<ParameterSet<FibrousTissue>>& fibrous_tissue_sets() {
        "KerMor, configurations SprengerUnitCube8Elem and Debug, quoting the CMISS file 3Elem_sprenger: c1M, "
        "c2M, c3M in MPa, c4M",
        {3.56463903963e4, 3.859558659683e3, 3.05907e-4, 47.270456264135881}},
+      {"roehrle_2017_muscle",
+       "Röhrle, Sprenger & Schmitt 2017, doi:10.1007/s10237-016-0850-x, quoted at second hand: check it "
+       "against the paper before relying on it",
+       {3.56e4, 3.86e3, 3.57e-2, 42.6}},
       {"sprenger_tendon",
        "tendon beside sprenger_muscle in public code that names the same thesis as its source; digits as "
        "read "
@@ -53,6 +57,10 @@ const std::vector<ParameterSet<ForceLength>>& force_length_sets() {
       {"symmetric_wide",
        "bell with both widths .3 and exponents 4, as used by public continuum muscle codes",
        {not_given, 0.3, 4.0, 0.3, 4.0}},
+      {"narrow_2017",
+       "narrow bell beside roehrle_2017_muscle, quoted at second hand: check it against a publication before "
+       "relying on it",
+       {not_given, 0.15, 2.0, 0.16, 4.0}},
   };
   return sets;
 }
@@ -63,10 +71,15 @@ const std::vector<ParameterSet<MuscleTendon>>& muscle_tendon_sets() {
        "sprenger_muscle, sprenger_tendon; sigma_max .3 MPa, lambda_opt 1.4 and the bell of Günther 2007 as "
        "in "
        "KerMor's quotation of 3Elem_sprenger",
-       sprenger("guenther_2007", 1.4)},
+       sprenger("sprenger_muscle", "guenther_2007", 1.4)},
       {"sprenger_early", "sprenger with the optimum at the stretch 1.3, the other value in use",
-       sprenger("guenther_2007", 1.3)},
-      {"sprenger_wide", "sprenger with the wide symmetric bell", sprenger("symmetric_wide", 1.4)},
+       sprenger("sprenger_muscle", "guenther_2007", 1.3)},
+      {"sprenger_wide", "sprenger with the wide symmetric bell",
+       sprenger("sprenger_muscle", "symmetric_wide", 1.4)},
+      {"roehrle_2017",
+       "roehrle_2017_muscle, sprenger_tendon and narrow_2017; sigma_max .3 MPa and lambda_opt 1.4 as in "
+       "sprenger",
+       sprenger("roehrle_2017_muscle", "narrow_2017", 1.4)},
   };
   return sets;
 }

@@ -2,11 +2,12 @@
 /// Published parameters of the muscle-tendon law by name, each with where the numbers were read. There is no
 /// default set: a study says which one it takes.
 ///
-/// | set            | muscle          | tendon          | active                               |
-/// |----------------|-----------------|-----------------|--------------------------------------|
-/// | sprenger       | sprenger_muscle | sprenger_tendon | guenther_2007, lambda_opt 1.4        |
-/// | sprenger_early | sprenger_muscle | sprenger_tendon | guenther_2007, lambda_opt 1.3        |
-/// | sprenger_wide  | sprenger_muscle | sprenger_tendon | symmetric_wide, lambda_opt 1.4       |
+/// | set            | muscle              | tendon          | active                               |
+/// |----------------|---------------------|-----------------|--------------------------------------|
+/// | sprenger       | sprenger_muscle     | sprenger_tendon | guenther_2007, lambda_opt 1.4        |
+/// | sprenger_early | sprenger_muscle     | sprenger_tendon | guenther_2007, lambda_opt 1.3        |
+/// | sprenger_wide  | sprenger_muscle     | sprenger_tendon | symmetric_wide, lambda_opt 1.4       |
+/// | roehrle_2017   | roehrle_2017_muscle | sprenger_tendon | narrow_2017, lambda_opt 1.4          |
 ///
 /// All with sigma_max .3 MPa, nominal, and tissues blended by their energies.
 

@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <map>
 
 #include "data/model/error.hpp"
 #include "fem/material/parameter_sets.hpp"
@@ -84,6 +86,37 @@ TEST(ParameterSets, NameTheNearestWhenOneIsMissing) {
   }
   EXPECT_THROW(fibrous_tissue_named("fat"), data::InputError);
   EXPECT_THROW(force_length_named("bell", 1.4), data::InputError);
+}
+
+TEST(ParameterSets, HaveTheirPublishedNumbers) {
+  const auto tissue = [](const std::string& name) {
+    const FibrousTissue t = fibrous_tissue_named(name);
+    return std::array{t.c1_pa, t.c2_pa, t.c3_pa, t.c4};
+  };
+  const auto bell = [](const std::string& name) {
+    const ForceLength f = force_length_named(name, 1.4);
+    return std::array{f.ascending_width, f.ascending_exponent, f.descending_width, f.descending_exponent};
+  };
+  EXPECT_EQ(fibrous_tissue_sets().size(), 3u);
+  EXPECT_EQ(tissue("sprenger_muscle"),
+            (std::array{3.56463903963e4, 3.859558659683e3, 3.05907e-4, 47.270456264135881}));
+  EXPECT_EQ(tissue("roehrle_2017_muscle"), (std::array{3.56e4, 3.86e3, 3.57e-2, 42.6}));
+  EXPECT_EQ(tissue("sprenger_tendon"), (std::array{2.31e6, 1.15, 7.99e6, 16.6}));
+  EXPECT_EQ(force_length_sets().size(), 3u);
+  EXPECT_EQ(bell("guenther_2007"), (std::array{0.57, 4.0, 0.14, 3.0}));
+  EXPECT_EQ(bell("symmetric_wide"), (std::array{0.3, 4.0, 0.3, 4.0}));
+  EXPECT_EQ(bell("narrow_2017"), (std::array{0.15, 2.0, 0.16, 4.0}));
+  const std::map<std::string, double> optimum{
+      {"sprenger", 1.4}, {"sprenger_early", 1.3}, {"sprenger_wide", 1.4}, {"roehrle_2017", 1.4}};
+  EXPECT_EQ(muscle_tendon_sets().size(), optimum.size());
+  for (const auto& [name, stretch] : optimum) {
+    const MuscleTendon m = muscle_tendon_named(name);
+    EXPECT_EQ(m.max_stress_pa, 0.3e6) << name;
+    EXPECT_EQ(m.force_length.optimal_stretch, stretch) << name;
+    EXPECT_EQ(m.tendon.c4, 16.6) << name;
+    EXPECT_EQ(m.blending, Blending::energies) << name;
+    EXPECT_EQ(m.active_stress, ActiveStress::nominal) << name;
+  }
 }
 
 TEST(ParameterSets, SayWhereTheyComeFrom) {
