@@ -210,17 +210,19 @@ OptionSpec output_option() {
        required_choice(
            "kind",
            {"reaction", "stress_resultant", "contact", "volume", "fibre_stretch", "fibre_stress",
-            "active_stress", "von_mises", "pressure", "jacobian", "section", "displacement"},
+            "active_stress", "von_mises", "pressure", "jacobian", "section", "displacement", "point"},
            "reaction: force and moment that a surface's nodes exert on the surroundings; stress_resultant: "
            "the same from stresses; contact: what a rigid body exerts on the surface in contact with it; "
            "volume: of "
            "regions; fibre_stretch to jacobian: "
            "volume-weighted mean, smallest and largest value; section: area and radii (and thickness) of a "
-           "cross-section that moves with the material; displacement: of a material point"),
+           "cross-section that moves with the material; displacement: of a material point; point: fibre "
+           "stretch and stresses there"),
        optional_text("surface", "reaction, stress_resultant"), optional_text("contact", "contact: its name"),
-       vector_option("point_m", "m",
-                     "moment about this point; section: a point of the plane; displacement: the point; all "
-                     "in the undeformed body"),
+       vector_option(
+           "point_m", "m",
+           "moment about this point; section: a point of the plane; displacement, point: the point; all "
+           "in the undeformed body"),
        optional_texts("regions", "by name or pattern; absent: all"),
        vector_option("normal", "1", "section: of the plane, undeformed"),
        vector_option("direction", "1", "section: with it, also the deformed extent along this direction")},

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
+#include "fem/quantities/displacement_at.hpp"
 #include "fem/solve/holds.hpp"
 #include "pipelines/stages/common.hpp"
 
@@ -140,7 +142,7 @@ void check_places(const Options& options, const fem::Discretisation& discretisat
       const std::string kind = entry.text("kind");
       const Eigen::Vector3d point = vector_of(entry, "point_m"), normal = vector_of(entry, "normal");
       if (kind == "section" && normal.norm() > 0.0) fem::section(discretisation, rest, point, normal);
-      if (kind == "displacement") fem::displacement_at(discretisation, rest, point);
+      if (kind == "displacement" || kind == "point") fem::locate(discretisation, point);
     });
   }
 }
@@ -161,6 +163,26 @@ void FemQuantities::contact(const Options& entry, const fem::AcceptedState& acce
   row.number(name + "_penetration_m", "m", sums.greatest_penetration_m);
 }
 
+void FemQuantities::point(const Options& entry, const fem::CellStates& states, Row& row) const {
+  const std::string name = entry.text("name");
+  const fem::Located at = fem::locate(discretisation_, vector_of(entry, "point_m"));
+  const fem::CellState s = states.at(at.cell, at.xi);
+  const double mean = s.cauchy_pa.trace() / 3.0;
+  if (s.has_fibre) {
+    row.number(name + "_fibre_stretch", "1", s.fibre_stretch);
+    row.number(name + "_fibre_stress_Pa", "Pa", s.fibre_stress_pa);
+    row.number(name + "_active_stress_Pa", "Pa", s.active_stress_pa);
+  }
+  row.number(name + "_von_mises_Pa", "Pa",
+             std::sqrt(1.5) * (s.cauchy_pa - mean * Eigen::Matrix3d::Identity()).norm());
+  row.number(name + "_pressure_Pa", "Pa", -mean);
+  row.number(name + "_jacobian", "1", s.jacobian);
+  const char axes[] = "xyz";
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j)
+      row.number(fmt::format("{}_stress_{}{}_Pa", name, axes[i], axes[j]), "Pa", s.cauchy_pa(i, j));
+}
+
 data::Table FemQuantities::row(int state, const fem::AcceptedState& accepted,
                                const fem::PointFields& fields) const {
   const fem::Configuration& configuration = accepted.state.configuration;
@@ -179,6 +201,7 @@ data::Table FemQuantities::row(int state, const fem::AcceptedState& accepted,
   row.number("volume_m3", "m3", accepted.record.volume);
   row.number("volume_change", "1", accepted.record.volume / discretisation_.volume() - 1.0);
   const int n_q = discretisation_.quadrature().size();
+  std::optional<fem::CellStates> states;
   for (const Options& entry : options_.tables("output")) {
     const std::string name = entry.text("name"), kind = entry.text("kind");
     if (kind == "reaction") {
@@ -202,6 +225,9 @@ data::Table FemQuantities::row(int state, const fem::AcceptedState& accepted,
                    fem::section_thickness(discretisation_, configuration, vector_of(entry, "point_m"),
                                           vector_of(entry, "normal"), vector_of(entry, "direction")));
       }
+    } else if (kind == "point") {
+      if (!states) states.emplace(problem_, discretisation_, configuration);
+      point(entry, *states, row);
     } else if (kind == "displacement") {
       const Eigen::Vector3d u =
           fem::displacement_at(discretisation_, configuration, vector_of(entry, "point_m"));

@@ -7,6 +7,7 @@
 
 #include "data/model/table.hpp"
 #include "fem/assembly/discretisation.hpp"
+#include "fem/quantities/cell_state.hpp"
 #include "fem/quantities/quantities.hpp"
 #include "fem/solve/solve.hpp"
 #include "pipelines/stages/fem_problem.hpp"
@@ -33,6 +34,7 @@ class FemQuantities {
  private:
   class Row;
   void contact(const Options& entry, const fem::AcceptedState& accepted, Row& row) const;
+  void point(const Options& entry, const fem::CellStates& states, Row& row) const;
 
   const Options& options_;
   const fem::Problem& problem_;
