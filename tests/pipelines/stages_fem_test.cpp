@@ -16,6 +16,7 @@
 #include "pipelines/stages/fem_surface.hpp"
 #include "stages_fem_support.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/python.hpp"
 
 namespace brachium::pipelines::tests {
 namespace {
@@ -233,6 +234,40 @@ TEST_F(FemRun, FieldFilesAndAReportWithAViewAreLeft) {
   EXPECT_THAT(text.str(), AllOf(HasSubstr("class=\"view3d\""), HasSubstr("webgl2"),
                                 Not(HasSubstr("could not be drawn"))));
   EXPECT_LT(text.str().size(), 5'000'000u);
+}
+
+TEST_F(FemRun, FieldFilesHoldTheStateThatAnotherReaderFindsInThem) {
+  if (!brachium::tests::python_has("h5py, numpy"))
+    GTEST_SKIP() << "needs /usr/bin/python3 with h5py and numpy";
+  ASSERT_EQ(run(stretched_block).outcome, Outcome::done);
+  const fs::path script = brachium::tests::source_dir() / "tests/pipelines/field_files.py";
+  EXPECT_EQ(std::system(fmt::format("/usr/bin/python3 '{}' '{}'", script.string(),
+                                    (folder_ / "run/01-block.x").string())
+                            .c_str()),
+            0);
+}
+
+TEST(FemSolve, EverySolverByNameGivesTheSameForce) {
+  const auto forces = [](const std::string& solver, std::size_t threads,
+                         const std::string& element = "q2_q1_taylor_hood") {
+    StageRequest request;
+    request.options = with(stretched_block, "q2_q1_taylor_hood", element) + "solver = { " + solver + " }\n";
+    request.threads = threads;
+    return run_stage(fem_stage(), request).tables.at("quantities").numbers("pull_N");
+  };
+  const std::vector<double> ldl = forces("linear_solver = \"ldl\"", 1);
+  for (const std::string name : {"cholmod", "umfpack"}) {
+    const std::vector<double> other = forces("linear_solver = \"" + name + "\"", 1);
+    ASSERT_EQ(other.size(), ldl.size()) << name;
+    for (std::size_t k = 0; k < ldl.size(); ++k) EXPECT_NEAR(other[k], ldl[k], 1e-8 * ldl[k]) << name;
+  }
+  for (const std::string name : {"ldl", "cholmod"}) {
+    const std::string options = fmt::format("linear_solver = \"{}\", deterministic = true", name);
+    EXPECT_EQ(forces(options, 1), forces(options, 2)) << name << ": to the last bit";
+    EXPECT_EQ(forces(options, 1, "q2_p1_discontinuous"), forces(options, 2, "q2_p1_discontinuous")) << name;
+  }
+  EXPECT_THAT(mistakes(stretched_block + "solver = { linear_solver = \"cholmot\" }\n"),
+              AllOf(HasSubstr("cholmot"), HasSubstr("cholmod")));
 }
 
 // ---------------------------------------------------------------- parts
