@@ -86,7 +86,11 @@ def run(command, core):
 
 
 def best(command, core, repeat):
-    return min((run(command, core) for _ in range(repeat)), key=lambda result: result["cpu_s"])
+    results = [run(command, core) for _ in range(repeat)]
+    least = min(results, key=lambda result: result["cpu_s"])
+    if "wall_s" in least:
+        least["wall_s"] = min(result["wall_s"] for result in results)
+    return least
 
 
 def shown(value):
@@ -114,7 +118,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("ours", nargs="?", help="fem_block_bench; without it dolfinx alone is measured")
     parser.add_argument("--core", type=int, default=0, help="the first of the two cores")
-    parser.add_argument("--repeat", type=int, default=1, help="the run with the least CPU time counts")
+    parser.add_argument("--repeat", type=int, default=1, help="the run with the least CPU time counts, and the least wall time")
     parser.add_argument("--cells", default="24x6x6", help="targets are judged at 24x6x6 only")
     parser.add_argument("--solver", choices=("ldl", "lu"), default="ldl", help="dolfinx' factorisation by MUMPS")
     parser.add_argument("--json", help="all lines are added to this file")

@@ -80,31 +80,36 @@ int main(int count, char** arguments) {
   Problem sweep = block(4, 1.1);
   for (int k = 1; k <= 10; ++k)
     sweep.programme.push_back(phase(fmt::format("{:.1f}", 0.1 * k), {}, {{"body", 0.1 * k}}));
-  fmt::print("\nactivation sweep at stretch 1.1\n{:>6} {:>6} {:>6} {:>6} {:>10} {:<10}\n", "alpha", "steps",
-             "newton", "chord", "residual", "state");
-  const Summary summary = solve(sweep, options);
-  int states = 0;
-  double newton = 0.0;
-  for (const Phase& phase : sweep.programme) {
-    int steps = 0, full = 0, chord = 0;
-    const StepRecord* last = nullptr;
-    for (const StepRecord& step : summary.steps) {
-      if (step.phase != phase.name) continue;
-      ++steps;
-      full += step.newton_iterations;
-      chord += step.chord_iterations;
-      last = &step;
+  for (const bool reuse : {true, false}) {
+    options.chord = reuse;
+    fmt::print("\nactivation sweep at stretch 1.1, {}\n{:>6} {:>6} {:>6} {:>6} {:>10} {:<10}\n",
+               reuse ? "factors used again" : "a factor for every iteration", "alpha", "steps", "newton",
+               "chord", "residual", "state");
+    const Summary summary = solve(sweep, options);
+    int states = 0;
+    double newton = 0.0;
+    for (const Phase& phase : sweep.programme) {
+      int steps = 0, full = 0, chord = 0;
+      const StepRecord* last = nullptr;
+      for (const StepRecord& step : summary.steps) {
+        if (step.phase != phase.name) continue;
+        ++steps;
+        full += step.newton_iterations;
+        chord += step.chord_iterations;
+        last = &step;
+      }
+      if (last == nullptr) continue;
+      fmt::print("{:>6} {:>6} {:>6} {:>6} {:>10.2e} {:<10}\n", phase.name, steps, full, chord,
+                 last->relative_residual, last->stability.verdict);
+      if (phase.name == "stretch") continue;
+      ++states;
+      newton += full;
     }
-    if (last == nullptr) continue;
-    fmt::print("{:>6} {:>6} {:>6} {:>6} {:>10.2e} {:<10}\n", phase.name, steps, full, chord,
-               last->relative_residual, last->stability.verdict);
-    if (phase.name == "stretch") continue;
-    ++states;
-    newton += full;
+    if (!summary.completed) fmt::print("    stopped: {}\n", summary.reason);
+    fmt::print("{:.2f} Newton iterations a state\n", states > 0 ? newton / states : 0.0);
+    met = met && summary.completed && newton <= 3.0 * states;
   }
-  if (!summary.completed) fmt::print("    stopped: {}\n", summary.reason);
-  fmt::print("{:.2f} Newton iterations a state\n", states > 0 ? newton / states : 0.0);
-  met = met && largest >= 100000 && summary.completed && newton <= 3.0 * states;
+  met = met && largest >= 100000;
   fmt::print("targets {}\n", met ? "met" : "MISSED");
   return met ? 0 : 1;
 }

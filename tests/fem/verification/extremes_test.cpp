@@ -40,5 +40,17 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+// Fibres that carry meganewtons at stretch 2 invert cells at the clamps before it.
+TEST(Extremes, WhatCannotBeSolvedEndsWithPlaceAndReason) {
+  const Outcome outcome = outcome_of(extreme("stretch 2, passive, clamped", Formulation::q2_q1_taylor_hood));
+  EXPECT_FALSE(outcome.solved);
+  EXPECT_NE(outcome.reason.find("phase `stretch`, step "), std::string::npos) << outcome.reason;
+  EXPECT_NE(outcome.reason.find("smallest J "), std::string::npos) << outcome.reason;
+  EXPECT_NE(outcome.reason.find("in cell "), std::string::npos) << outcome.reason;
+  EXPECT_LT(outcome.cut_backs, 50) << "no endless bisection";
+  EXPECT_TRUE(std::isfinite(outcome.force_n)) << "of the last converged state";
+  EXPECT_EQ(outcome.stability, "stable");
+}
+
 }  // namespace
 }  // namespace brachium::fem::verification
