@@ -74,6 +74,21 @@ TEST(FemFiles, LinearCellsAreElevatedWhereAskedFor) {
               AllOf(HasSubstr("error[cell-type-mismatch]"), HasSubstr("elevate = true")));
 }
 
+TEST(FemFiles, TheSameTetrahedraFromEveryFormatGiveTheSameForce) {
+  for (const std::string element : {"p2_p1_taylor_hood", "p2b_p1_discontinuous"}) {
+    const StageData vtu = solved(pulled(sample("tet10_raw.vtu"), element, vtk_names));
+    const double force = last(vtu, "end_N");
+    EXPECT_NEAR(force, last(solved(pulled(sample("tet10_41.msh"), element)), "end_N"), 0.1 * force)
+        << "another cut of the same body";
+    EXPECT_NEAR(last(vtu, "soft_m3"), 1e-6, 2e-8);
+    for (const auto& [file, more] : {std::pair{"tet10_51.vtk", vtk_names},
+                                     {"tet10_51_binary.vtk", vtk_names},
+                                     {"tet10_40.feb", std::string()}})
+      EXPECT_NEAR(last(solved(pulled(sample(file), element, more)), "end_N"), force, 1e-9 * force)
+          << element << ", " << file;
+  }
+}
+
 /// Fibres along y in a muscle that is pulled along x bear nothing; along x they stiffen it.
 std::string fibrous(const std::string& file, const std::string& field, const std::string& more = "") {
   std::string options = pulled(file, "q2_p1_discontinuous", more);

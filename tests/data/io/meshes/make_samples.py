@@ -6,6 +6,7 @@ Debian packages: gmsh, python3-vtk9. Run in this folder with Debian's python3; `
 [0, 20] x [0, 10] x [0, 10] mm, region `tendon` for x < 10, `muscle` beyond; surfaces `origin` (x = 0) and `insertion`
 (x = 20); all edges straight. In VTK's files regions are called 1 and 2, surfaces 7 and 8.
 """
+import itertools
 import subprocess
 import sys
 from pathlib import Path
@@ -45,6 +46,27 @@ def gmsh():
                 subprocess.run(["gmsh", str(geo), "-3", "-format", name, "-setnumber", "Mesh.Binary", str(binary), "-o", out,
                                 "-v", "1"] + k["options"], check=True)
         geo.unlink()
+
+
+def tetrahedra():
+    """(region, corners) of six tetrahedra a block: those along the paths over its edges from its lowest to its highest corner."""
+    for block in range(2):
+        for path in itertools.permutations(range(3)):
+            corners = [[10.0 * block, 0.0, 0.0]]
+            for axis in path:
+                corners.append([x + 10.0 * (k == axis) for k, x in enumerate(corners[-1])])
+            if path not in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # an odd permutation: a negative volume
+                corners[2], corners[3] = corners[3], corners[2]
+            yield block + 1, corners
+
+
+def triangles():
+    """(surface, corners) of those tetrahedra's faces at x = 0 (7) and x = 20 (8)."""
+    for _, corners in tetrahedra():
+        for x, number in ((0.0, 7), (20.0, 8)):
+            face = [c for c in corners if c[0] == x]
+            if len(face) == 3:
+                yield number, face
 
 
 def vtk_files():
@@ -93,6 +115,33 @@ def vtk_files():
         g.GetPointData().AddArray(height)
         return g
 
+    def tetrahedra_grid():
+        points = vtk.vtkPoints()
+        points.SetDataTypeToDouble()
+        g = vtk.vtkUnstructuredGrid()
+        names = vtk.vtkIntArray()
+        names.SetName("region")
+        index = {}
+
+        def point(x):
+            if x not in index:
+                index[x] = points.InsertNextPoint(x)
+            return index[x]
+
+        for cell_type, kind, cells in ((24, vtk.vtkQuadraticTetra, tetrahedra()), (22, vtk.vtkQuadraticTriangle, triangles())):
+            pc = kind().GetParametricCoords()
+            for number, corners in cells:
+                ids = []
+                for i in range(kind().GetNumberOfPoints()):
+                    local = pc[3 * i:3 * i + len(corners) - 1]
+                    weights = (1 - sum(local), *local)
+                    ids.append(point(tuple(sum(w * c[k] for w, c in zip(weights, corners)) for k in range(3))))
+                g.InsertNextCell(cell_type, len(ids), ids)
+                names.InsertNextValue(number)
+        g.SetPoints(points)
+        g.GetCellData().AddArray(names)
+        return g
+
     g = grid(29)
     for name, mode, compressor in (("ascii", 0, None), ("inline", 1, None), ("inline_zlib", 1, "zlib"),
                                    ("appended", 2, None), ("appended_zlib", 2, "zlib"), ("raw", 3, None),
@@ -116,12 +165,18 @@ def vtk_files():
         else:
             w.SetCompressorTypeToLZ4()
         w.Write()
-    for kind, cell_type in (("hex8", 12), ("hex20", 25), ("hex27", 29)):
+    w = vtk.vtkXMLUnstructuredGridWriter()
+    w.SetFileName("tet10_raw.vtu")
+    w.SetInputData(tetrahedra_grid())
+    w.SetDataModeToAppended()
+    w.EncodeAppendedDataOff()
+    w.Write()
+    for kind, cell_type in (("hex8", 12), ("hex20", 25), ("hex27", 29), ("tet10", 24)):
         for binary in (0, 1):
             for version in (42, 51) if kind == "hex27" else (51,):
                 w = vtk.vtkUnstructuredGridWriter()
                 w.SetFileName(f"{kind}_{version}{'_binary' if binary else ''}.vtk")
-                w.SetInputData(grid(cell_type))
+                w.SetInputData(tetrahedra_grid() if kind == "tet10" else grid(cell_type))
                 w.SetFileVersion(version)
                 (w.SetFileTypeToBinary if binary else w.SetFileTypeToASCII)()
                 w.Write()
@@ -163,8 +218,42 @@ def febio():
         Path(f"{kind}_{version.replace('.', '')}.feb").write_text("\n".join(text) + "\n")
 
 
+def febio_tetrahedra():
+    """FEBio's tet10: corners, then the middles of the edges 01 12 20 03 13 23 (FETet10)."""
+    ids = {}
+
+    def number(x):
+        return str(ids.setdefault(tuple(x), len(ids) + 101))
+
+    def middle(a, b):
+        return number((p + q) / 2 for p, q in zip(a, b))
+
+    parts = {"tendon": [], "muscle": []}
+    for region, c in tetrahedra():
+        nodes = [number(x) for x in c] + [middle(c[a], c[b]) for a, b in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))]
+        parts["tendon" if region == 1 else "muscle"].append(",".join(nodes))
+    surfaces = {"origin": [], "insertion": []}
+    for surface, c in triangles():
+        nodes = [number(x) for x in c] + [middle(c[a], c[b]) for a, b in ((0, 1), (1, 2), (2, 0))]
+        surfaces["origin" if surface == 7 else "insertion"].append(",".join(nodes))
+    text = ['<?xml version="1.0" encoding="ISO-8859-1"?>', '<febio_spec version="4.0">', '  <Mesh>', '    <Nodes name="all">']
+    text += [f'      <node id="{i}">{x:g},{y:g},{z:g}</node>' for (x, y, z), i in ids.items()]
+    text.append('    </Nodes>')
+    count = itertools.count(1)
+    for name, cells in parts.items():
+        text += [f'    <Elements type="tet10" name="{name}">', *(f'      <elem id="{next(count)}">{c}</elem>' for c in cells),
+                 '    </Elements>']
+    for name, faces in surfaces.items():
+        text += [f'    <Surface name="{name}">', *(f'      <tri6 id="{i}">{f}</tri6>' for i, f in enumerate(faces, 1)),
+                 '    </Surface>']
+    text += ['  </Mesh>', '  <MeshDomains>', '    <SolidDomain name="tendon" mat="a"/>', '    <SolidDomain name="muscle" mat="b"/>',
+             '  </MeshDomains>', '</febio_spec>']
+    Path("tet10_40.feb").write_text("\n".join(text) + "\n")
+
+
 if __name__ == "__main__":
     febio()
+    febio_tetrahedra()
     if "vtk" not in sys.argv:
         gmsh()
     vtk_files()
