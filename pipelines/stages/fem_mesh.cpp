@@ -64,7 +64,7 @@ data::Mesh spindle(const Options& o, data::CellType type) {
   fem::SpindleOptions s;
   s.type = type;
   s.origin_tendon = {o.number("origin_tendon_m"), whole(o, "origin_tendon_cells")};
-  s.belly = {o.number("belly_m"), whole(o, "belly_cells")};
+  s.belly = {o.number("belly_m"), whole(o, "belly_cells"), o.number("belly_grading"), true};
   s.insertion_tendon = {o.number("insertion_tendon_m"), whole(o, "insertion_tendon_cells")};
   s.belly_radius_m = o.number("belly_radius_m");
   s.tendon_radius_m = o.number("tendon_radius_m");
@@ -81,9 +81,9 @@ data::Mesh spindle(const Options& o, data::CellType type) {
 data::Mesh pennate(const Options& o, data::CellType type) {
   fem::PennateOptions p;
   p.type = type;
-  p.length = {o.number("length_m"), whole(o, "length_cells")};
+  p.length = {o.number("length_m"), whole(o, "length_cells"), o.number("length_grading"), true};
   p.width = {o.number("width_m"), whole(o, "width_cells")};
-  p.thickness = {o.number("thickness_m"), whole(o, "thickness_cells")};
+  p.thickness = {o.number("thickness_m"), whole(o, "thickness_cells"), o.number("thickness_grading"), true};
   p.pennation_rad = o.number("pennation_deg") * std::numbers::pi / 180.0;
   p.aponeurosis = {o.number("aponeurosis_m"), whole(o, "aponeurosis_cells")};
   p.tendon = {o.number("tendon_m"), whole(o, "tendon_cells")};

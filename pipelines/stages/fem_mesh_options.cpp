@@ -35,6 +35,8 @@ OptionSpec fem_mesh_option() {
   std::vector<OptionSpec> spindle{
       required_number("belly_m", "m", above(0.0), "length of the belly along z"),
       cells_option("belly_cells", 12, "cells along the belly"),
+      number_option("belly_grading", "1", 1.0, above(0.0),
+                    "length of a cell in the belly's middle over that of one at its ends"),
       required_number("belly_radius_m", "m", above(0.0), "largest radius"),
       required_number("tendon_radius_m", "m", above(0.0), "radius of the tendons"),
       number_option("origin_tendon_m", "m", 0.0, at_least(0.0),
@@ -60,10 +62,14 @@ OptionSpec fem_mesh_option() {
   std::vector<OptionSpec> pennate{
       required_number("length_m", "m", above(0.0), "what each sheet covers along x"),
       cells_option("length_cells", 8, "cells along it"),
+      number_option("length_grading", "1", 1.0, above(0.0),
+                    "length of a cell in the middle over that of one at the ends"),
       required_number("width_m", "m", above(0.0), "width along y"),
       cells_option("width_cells", 3, "cells along it"),
       required_number("thickness_m", "m", above(0.0), "distance of the sheets along z"),
       cells_option("thickness_cells", 4, "cells along the fibres"),
+      number_option("thickness_grading", "1", 1.0, above(0.0),
+                    "length of a cell halfway along the fibres over that of one at the sheets"),
       required_number("pennation_deg", "deg", between(3.0, 90.0), "angle of the fibres to x"),
       number_option("aponeurosis_m", "m", 0.0, at_least(0.0),
                     "thickness of each sheet; 0: no sheets and no tendons"),

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -87,6 +88,41 @@ TEST(FemFiles, TheSameTetrahedraFromEveryFormatGiveTheSameForce) {
       EXPECT_NEAR(last(solved(pulled(sample(file), element, more)), "end_N"), force, 1e-9 * force)
           << element << ", " << file;
   }
+}
+
+/// Smallest and largest x (or z) distance between neighbouring planes of nodes on the surface.
+std::pair<double, double> spacings(const StageData& data, const std::string& axis) {
+  std::vector<double> at = data.tables.at("surface_points").numbers(axis);
+  std::sort(at.begin(), at.end());
+  double least = 1.0, most = 0.0;
+  for (std::size_t k = 1; k < at.size(); ++k) {
+    const double d = at[k] - at[k - 1];
+    if (d < 1e-6) continue;
+    least = std::min(least, d);
+    most = std::max(most, d);
+  }
+  return {least, most};
+}
+
+TEST(FemFiles, BelliesAreGradedWhereAskedFor) {
+  const auto belly = [](const std::string& grading) {
+    return solved(
+        "mesh = { spindle = { belly_m = 0.06, belly_cells = 6, belly_radius_m = 0.01, tendon_radius_m = "
+        "0.008, core_cells = 1" +
+        grading + R"( } }
+material = [{ law = "neo_hooke", shear_modulus_pa = 2e4, incompressible = true }]
+boundary = [
+  { name = "bone", surface = "origin", kind = "fixed" },
+  { name = "pull", surface = "insertion", kind = "displacement", x_m = 0, y_m = 0, z_m = 0.001 },
+]
+phase = [{ name = "stretch", amplitude = { pull = 1.0 }, steps = 1 }]
+)");
+  };
+  const auto [even_least, even_most] = spacings(belly(""), "z_m");
+  EXPECT_NEAR(even_least, 0.005, 1e-9) << "half a cell: midside nodes";
+  EXPECT_NEAR(even_most, 0.005, 1e-9);
+  const auto [least, most] = spacings(belly(", belly_grading = 4"), "z_m");
+  EXPECT_NEAR(most / least, 4.0, 1e-6);
 }
 
 /// Fibres along y in a muscle that is pulled along x bear nothing; along x they stiffen it.
