@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "stages_fem_support.hpp"
@@ -176,6 +177,26 @@ TEST(FemLaws, AnUnstableEquilibriumIsSaidInTheVerdictOrLeft) {
   const StageData bent = solved(with(rod, "\"report\"", "\"relax\""));
   EXPECT_THAT(bent.attributes.at("verdict"), testing::Not(HasSubstr("UNSTABLE")));
   EXPECT_GT(std::hypot(last(bent, "middle_y_m"), last(bent, "middle_z_m")), 2e-3) << "it has buckled";
+}
+
+/// 60 % in one step, with fibres whose stiffness grows as the 46th power of their stretch.
+TEST(FemLaws, ACorrectionThatGoesTooFarIsDampedAndTheStepConverges) {
+  const StageData data = solved(R"(mesh = { block = { size_m = [0.04, 0.01, 0.01], cells = [4, 2, 2] } }
+material = [{ set = "sprenger", incompressible = true }]
+fibre = [{ kind = "constant", direction = [1, 0, 0] }]
+boundary = [{ name = "left", surface = "x0", kind = "fixed" },
+            { name = "right", surface = "x1", kind = "displacement", x_m = 0.024, y_m = 0, z_m = 0 }]
+phase = [{ name = "stretch", amplitude = { right = 1 }, steps = 1 }]
+solver = { predictor = false, chord = false }
+)");
+  const data::Table& iterations = data.tables.at("iterations");
+  const std::vector<double>&part = iterations.numbers("line_search"),
+        &left = iterations.numbers("relative_residual");
+  const auto& kind = iterations.texts("kind");
+  const auto end = static_cast<std::size_t>(std::find(kind.begin() + 1, kind.end(), "cut") - kind.begin());
+  EXPECT_LT(*std::min_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(end)), 0.5);
+  EXPECT_LT(left[end - 1], 1e-8)
+      << "the same step, before it was cut to see whether its end is a branch of its own";
 }
 
 TEST(FemLaws, APointOutsideTheBodyIsTold) {
