@@ -148,6 +148,17 @@ void say_verdict(const fem::Problem& problem, StageOutput& out) {
   out.attributes["verdict_tone"] = unstable > 0 ? "warning" : "good";
 }
 
+/// Statistics of the fibre field, region by region.
+void say_fibres(const data::Table& f, const StageContext& context) {
+  if (!context.say) return;
+  for (std::size_t k = 0; k < f.rows(); ++k)
+    context.say(fmt::format(
+        "fibres of `{}`: mean direction ({:.3g}, {:.3g}, {:.3g}), angles to it {:.3g} to {:.3g} deg, rms "
+        "{:.3g}",
+        f.texts("region")[k], f.numbers("mean_x")[k], f.numbers("mean_y")[k], f.numbers("mean_z")[k],
+        f.numbers("angle_min_deg")[k], f.numbers("angle_max_deg")[k], f.numbers("angle_rms_deg")[k]));
+}
+
 void run(const StageContext& context, StageOutput& out) {
   const Options& options = *context.options;
   if (context.progress) context.progress(0.0, "problem");
@@ -155,6 +166,7 @@ void run(const StageContext& context, StageOutput& out) {
   const fem::Problem& problem = built.problem;
   const data::Mesh& mesh = *problem.mesh;
   const fem::Discretisation discretisation(problem.mesh, problem.formulation);
+  say_fibres(built.directions, context);
   const FemQuantities quantities(options, problem, discretisation);
   const FemSurface surface(mesh);
   const std::string save = context.beside.empty() ? std::string("none") : options.text("save_fields");

@@ -247,6 +247,20 @@ TEST_F(FemRun, FieldFilesHoldTheStateThatAnotherReaderFindsInThem) {
             0);
 }
 
+TEST_F(FemRun, StatisticsOfTheFibresAreInTheLog) {
+  ASSERT_EQ(
+      run(with(with(stretched_block, "law = \"neo_hooke\", shear_modulus_pa = 2e4", "set = \"sprenger\""),
+               "phase = [", "fibre = [{ kind = \"constant\", direction = [0, 2, 0] }]\nphase = ["))
+          .outcome,
+      Outcome::done);
+  EXPECT_THAT(said_,
+              ::testing::Contains(HasSubstr("fibres of `tissue`: mean direction (0, 1, 0), angles to it "
+                                            "0 to 0 deg, rms 0")));
+  std::stringstream log;
+  log << std::ifstream(folder_ / "run/log.txt").rdbuf();
+  EXPECT_THAT(log.str(), HasSubstr("fibres of `tissue`: mean direction (0, 1, 0)"));
+}
+
 TEST(FemSolve, EverySolverByNameGivesTheSameForce) {
   const auto forces = [](const std::string& solver, std::size_t threads,
                          const std::string& element = "q2_q1_taylor_hood") {
