@@ -110,8 +110,15 @@ ForearmMotion motion_from_points(const Eigen::Matrix3Xd& elbow, const Eigen::Mat
 }
 
 ForearmMotion motion_from_angle(const Eigen::VectorXd& angle, double rate_hz, double inclination) {
-  if (!angle.allFinite() || !std::isfinite(inclination))
-    throw InputError("not-finite", "the elbow angle or the upper arm's inclination is not finite");
+  if (!std::isfinite(inclination))
+    throw InputError("not-finite", "the upper arm's inclination is not a finite number");
+  for (Index i = 0; i < angle.size(); ++i) {
+    if (!std::isfinite(angle(i)))
+      throw InputError("not-finite",
+                       fmt::format("the elbow angle is not a finite number at sample {} ({:.6g} s)", i,
+                                   static_cast<double>(i) / rate_hz),
+                       "fill or cut the gap before");
+  }
   ForearmMotion m;
   m.rate_hz = rate_hz;
   m.direction.resize(3, angle.size());

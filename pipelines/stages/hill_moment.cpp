@@ -122,6 +122,7 @@ class TrialRun {
   }
 
   void run(const MomentFrames& frames, std::size_t from) {
+    check_angles(frames, chain_.coordinate, name_);
     total_.assign(frames.time.count, 0.0);
     passive_total_.assign(frames.time.count, 0.0);
     length_.resize(frames.time.count);

@@ -2,7 +2,11 @@
 /// Stages over the rigid limb: motion, and the reference moment.
 
 #include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "data/model/error.hpp"
 #include "data/model/resample.hpp"
 #include "pipelines/stage.hpp"
 
@@ -20,5 +24,17 @@ data::Signal recorded_angle(const StageData& input, const std::string& trial,
 data::Signal make_signal(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity,
                          const std::string& unit, const std::string& coordinate,
                          const Eigen::VectorXd& values);
+
+/// Runs `task`; what it finds wrong is told with the trial in front.
+template <class Task>
+auto in_trial(const std::string& trial, const Task& task) {
+  try {
+    return task();
+  } catch (const data::InputError& error) {
+    std::vector<data::Diagnostic> named = error.diagnostics();
+    for (data::Diagnostic& finding : named) finding.message = "trial `" + trial + "`: " + finding.message;
+    throw data::InputError(std::move(named));
+  }
+}
 
 }  // namespace brachium::pipelines

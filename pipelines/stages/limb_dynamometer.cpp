@@ -33,7 +33,8 @@ Record read_record(const StageContext& context, const data::Coordinate& coordina
                                     signal_of(input, trial, Quantity::dynamometer_angle, coordinate.name)};
   if (has_signal_of(input, trial, Quantity::dynamometer_velocity, coordinate.name))
     signals.push_back(signal_of(input, trial, Quantity::dynamometer_velocity, coordinate.name));
-  const std::vector<data::Signal> aligned = data::align(signals, signals.front().info.rate_hz);
+  const std::vector<data::Signal> aligned =
+      in_trial(trial, [&] { return data::align(signals, signals.front().info.rate_hz); });
   limb::DynamometerLayout layout;
   layout.angle_sign = static_cast<int>(o.integer("angle_sign"));
   layout.torque_sign = static_cast<int>(o.integer("torque_sign"));
@@ -41,8 +42,12 @@ Record read_record(const StageContext& context, const data::Coordinate& coordina
   layout.torque_zero_N_m = o.number("torque_zero_N_m");
   const std::vector<double> none;
   const data::SignalInfo& info = aligned.front().info;
-  return {limb::joint_record(aligned[1].samples, aligned.size() > 2 ? aligned[2].samples : none,
-                             aligned[0].samples, info.rate_hz, layout, o.number("lowpass_hz")),
+  return {in_trial(trial,
+                   [&] {
+                     return limb::joint_record(
+                         aligned[1].samples, aligned.size() > 2 ? aligned[2].samples : none,
+                         aligned[0].samples, info.rate_hz, layout, o.number("lowpass_hz"));
+                   }),
           {info.rate_hz, info.start_time_s, aligned.front().samples.size()}};
 }
 
@@ -95,8 +100,9 @@ std::optional<limb::GravityModel> fit_sweep(const StageContext& context, const d
   }
   limb::PassiveSweepOptions options;
   options.max_speed_rad_per_s = o.number("sweep_max_speed_deg_s") * rad_per_deg;
+  const Record sweep = read_record(context, coordinate, passive.front());
   limb::GravityModel model =
-      limb::fit_gravity(read_record(context, coordinate, passive.front()).joint, options);
+      in_trial(passive.front(), [&] { return limb::fit_gravity(sweep.joint, options); });
   TableBuilder table("gravity fitted to the passive sweep");
   table.text("trial")
       .number("cos_N_m", "N m")

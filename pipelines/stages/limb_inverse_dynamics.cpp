@@ -46,7 +46,7 @@ Block read_block(const StageData& input, std::size_t t, const std::vector<std::s
       Eigen::MatrixXd(static_cast<Eigen::Index>(names.size()), static_cast<Eigen::Index>(common.count)),
       common};
   for (std::size_t k = 0; k < signals.size(); ++k) {
-    const data::Signal on_grid = data::resample(signals[k], common);
+    const data::Signal on_grid = in_trial(trial.name, [&] { return data::resample(signals[k], common); });
     block.rows.row(static_cast<Eigen::Index>(k)) =
         Eigen::Map<const Eigen::RowVectorXd>(on_grid.samples.data(), static_cast<Eigen::Index>(common.count));
   }
@@ -113,7 +113,9 @@ Result run_trial(const StageContext& context, const data::Scene& scene, const da
     const auto count = static_cast<Eigen::Index>(distal.size() / 3);
     for (Eigen::Index p = 0; p < count; ++p)
       mean += points.rows.middleRows(3 + 3 * p, 3) / static_cast<double>(count);
-    from_points = limb::motion_from_points(points.rows.topRows(3), mean, points.grid.rate_hz, up);
+    from_points = in_trial(name, [&] {
+      return limb::motion_from_points(points.rows.topRows(3), mean, points.grid.rate_hz, up);
+    });
   }
   if (motion_kind == "points") {
     need(has_points, distal);
@@ -135,7 +137,9 @@ Result run_trial(const StageContext& context, const data::Scene& scene, const da
                       context.name),
           "give it as three numbers, or record elbow and wrist points from which it is found");
     }
-    motion = limb::motion_from_orientation(quaternion->rows, quaternion->grid.rate_hz, convention);
+    motion = in_trial(name, [&] {
+      return limb::motion_from_orientation(quaternion->rows, quaternion->grid.rate_hz, convention);
+    });
     if (from_points) {
       motion.elbow_m = from_points->elbow_m;
       result.agreement = limb::compare_directions(motion.direction, from_points->direction);
@@ -143,15 +147,19 @@ Result run_trial(const StageContext& context, const data::Scene& scene, const da
   } else {
     const data::Signal angle = recorded_angle(input, name, coordinate);
     result.grid = {angle.info.rate_hz, angle.info.start_time_s, angle.samples.size()};
-    motion =
-        limb::motion_from_angle(Eigen::Map<const Eigen::VectorXd>(
-                                    angle.samples.data(), static_cast<Eigen::Index>(angle.samples.size())),
-                                angle.info.rate_hz, scene.upper_arm_inclination_rad);
+    motion = in_trial(name, [&] {
+      return limb::motion_from_angle(
+          Eigen::Map<const Eigen::VectorXd>(angle.samples.data(),
+                                            static_cast<Eigen::Index>(angle.samples.size())),
+          angle.info.rate_hz, scene.upper_arm_inclination_rad);
+    });
   }
   result.origin = motion.origin;
   const limb::BodySet bodies = limb::bodies_of(scene, coordinate.name, trial.conditions, name);
-  result.moment = limb::inverse_dynamics_moment(motion, bodies,
-                                                {o.number("lowpass_hz"), o.boolean("elbow_acceleration")});
+  result.moment = in_trial(name, [&] {
+    return limb::inverse_dynamics_moment(motion, bodies,
+                                         {o.number("lowpass_hz"), o.boolean("elbow_acceleration")});
+  });
   return result;
 }
 

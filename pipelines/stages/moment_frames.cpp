@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "data/model/error.hpp"
 
@@ -45,6 +46,22 @@ MomentFrames kinematics_at(const CommonFrames& common, const data::Signal& angle
   frames.angle_rad = data::evaluate_at(angle, times);
   if (velocity) frames.velocity_rad_s = data::evaluate_at(*velocity, times);
   return frames;
+}
+
+void check_angles(const MomentFrames& frames, const data::Coordinate& coordinate, const std::string& trial) {
+  const double deg = 180.0 / std::numbers::pi;
+  for (std::size_t i = 0; i < frames.angle_rad.size(); ++i) {
+    const double q = frames.angle_rad[i];
+    if (q >= coordinate.lower_rad && q <= coordinate.upper_rad) continue;
+    throw data::InputError(
+        "angle-out-of-range",
+        fmt::format("`{}` of trial `{}` is {:.1f} deg at {:.6g} s; the scene's geometry holds from {:.1f} to "
+                    "{:.1f} deg",
+                    coordinate.name, trial, q * deg, frames.time.time_s(i), coordinate.lower_rad * deg,
+                    coordinate.upper_rad * deg),
+        "widen `range_deg` with geometry that is valid there, check the angle's zero, or leave the trial "
+        "out");
+  }
 }
 
 data::SignalInfo signal_on(const data::TimeGrid& grid, const std::string& name, data::Quantity quantity,

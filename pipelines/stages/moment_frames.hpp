@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data/model/resample.hpp"
+#include "data/model/scene.hpp"
 #include "data/model/session.hpp"
 
 namespace brachium::pipelines {
@@ -27,6 +28,9 @@ CommonFrames common_frames(const data::SignalInfo& activation, const data::Signa
 struct MomentFrames : CommonFrames {
   std::vector<double> angle_rad, velocity_rad_s;  ///< velocity empty where none is given
 };
+
+/// Throws InputError("angle-out-of-range") naming trial and time of the first angle outside the coordinate's range.
+void check_angles(const MomentFrames& frames, const data::Coordinate& coordinate, const std::string& trial);
 
 MomentFrames kinematics_at(const CommonFrames& frames, const data::Signal& angle,
                            const std::optional<data::Signal>& velocity);
