@@ -22,6 +22,10 @@ double least_radius(const MuscleBody& body) {
   return *std::min_element(body.profile_m.begin(), body.profile_m.end());
 }
 
+void scale_profile(MuscleBody& body, double factor) {
+  for (double& r : body.profile_m) r *= factor;
+}
+
 double volume(const MuscleBody& body) {
   return mean_area_m2(body) * body.belly_length_m;
 }
@@ -68,16 +72,10 @@ const std::vector<Access>& accesses() {
        BRACHIUM_MEMBER(belly_length_m)},
       {{"greatest_radius_m", "m", "of the profile, which is scaled as a whole", 0.008, 0.06},
        greatest_radius,
-       [](MuscleBody& b, double v) {
-         const double factor = v / greatest_radius(b);
-         for (double& r : b.profile_m) r *= factor;
-       }},
+       [](MuscleBody& b, double v) { scale_profile(b, v / greatest_radius(b)); }},
       {{"volume_m3", "m3", "of the belly, by the profile as a whole at the length it has", 2e-5, 1e-3},
        volume,
-       [](MuscleBody& b, double v) {
-         const double factor = std::sqrt(v / volume(b));
-         for (double& r : b.profile_m) r *= factor;
-       }},
+       [](MuscleBody& b, double v) { scale_profile(b, std::sqrt(v / volume(b))); }},
       {{"end_radius_norm", "1", "the profile's least radius over its greatest, which stays", 0.3, 1.0},
        [](const MuscleBody& b) { return least_radius(b) / greatest_radius(b); },
        [](MuscleBody& b, double v) {

@@ -45,6 +45,14 @@ Matrix3d cofactor(const Matrix3d& F) {
 
 }  // namespace
 
+double pressure_of(const Matrix3d& cauchy_pa) {
+  return -cauchy_pa.trace() / 3.0;
+}
+
+double von_mises_of(const Matrix3d& cauchy_pa) {
+  return std::sqrt(1.5) * (cauchy_pa + pressure_of(cauchy_pa) * Matrix3d::Identity()).norm();
+}
+
 CellStates::CellStates(const Problem& problem, const Discretisation& discretisation,
                        const Configuration& configuration)
     : problem_(problem), discretisation_(discretisation), configuration_(configuration) {

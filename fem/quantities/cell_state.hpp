@@ -28,6 +28,9 @@
 
 namespace brachium::fem {
 
+double pressure_of(const Eigen::Matrix3d& cauchy_pa);   ///< -tr σ / 3 [Pa], compression positive
+double von_mises_of(const Eigen::Matrix3d& cauchy_pa);  ///< sqrt(3/2 |dev σ|²) [Pa]
+
 struct CellState {
   CellPoint point;
   double jacobian = 1.0;

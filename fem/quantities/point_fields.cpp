@@ -1,7 +1,5 @@
 #include "fem/quantities/point_fields.hpp"
 
-#include <cmath>
-
 #include "fem/quantities/cell_state.hpp"
 
 namespace brachium::fem {
@@ -23,13 +21,12 @@ PointFields point_fields(const Problem& problem, const Discretisation& discretis
       const Eigen::Index i = q + static_cast<Eigen::Index>(n_q) * cell;
       const CellState state = states.at_quadrature(cell, q);
       const Eigen::Matrix3d& s = state.cauchy_pa;
-      const double mean = s.trace() / 3.0;
       fields.fibre_stretch[i] = state.fibre_stretch;
       fields.jacobian[i] = state.jacobian;
-      fields.pressure_pa[i] = -mean;
+      fields.pressure_pa[i] = pressure_of(s);
       fields.fibre_stress_pa[i] = state.fibre_stress_pa;
       fields.active_stress_pa[i] = state.active_stress_pa;
-      fields.von_mises_pa[i] = std::sqrt(1.5) * (s - mean * Eigen::Matrix3d::Identity()).norm();
+      fields.von_mises_pa[i] = von_mises_of(s);
       fields.cauchy_pa.col(i) << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
       fields.fibre.col(i) = state.fibre_now;
     }

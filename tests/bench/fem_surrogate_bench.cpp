@@ -1,13 +1,13 @@
 // Time of one evaluation of two muscles with both derivatives, and of a series of 30 s at 100 Hz.
 // Asked: below 100 ns a pair, below 5 ms a series; exit code 1 where one of them takes longer.
 
-#include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "fem/surrogate/sparse_spline.hpp"
 #include "fem/surrogate/tensor.hpp"
+#include "tests/bench/judged.hpp"
 
 namespace {
 
@@ -91,33 +91,15 @@ void Making(benchmark::State& state) {
 }
 BENCHMARK(Making)->Arg(spline)->Arg(hermite_quintic)->Arg(sparse)->Unit(benchmark::kMillisecond);
 
-class Judge : public benchmark::ConsoleReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    ConsoleReporter::ReportRuns(runs);
-    for (const Run& r : runs) {
-      const std::string name = r.benchmark_name();
-      const double asked_s = name.starts_with("BothMuscles") ? 100e-9
-                             : name.starts_with("Thirty")    ? 5e-3
-                                                             : 1e9;
-      const double each_s = r.real_accumulated_time / static_cast<double>(r.iterations);
-      if (each_s < asked_s) continue;
-      std::fprintf(stderr, "too slow: %s: %.3g s, asked %.3g s\n", name.c_str(), each_s, asked_s);
-      missed_ = true;
-    }
-  }
-  bool missed() const { return missed_; }
-
- private:
-  bool missed_ = false;
-};
+std::string too_slow(const benchmark::BenchmarkReporter::Run& run) {
+  const std::string name = run.benchmark_name();
+  const double asked_s = name.starts_with("BothMuscles") ? 100e-9 : name.starts_with("Thirty") ? 5e-3 : 1e9;
+  const double each_s = run.real_accumulated_time / static_cast<double>(run.iterations);
+  return each_s < asked_s ? "" : fmt::format("{:.3g} s, asked {:.3g} s", each_s, asked_s);
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  Judge judge;
-  benchmark::RunSpecifiedBenchmarks(&judge);
-  return judge.missed() ? 1 : 0;
+  return brachium::bench::run_judged(argc, argv, too_slow);
 }

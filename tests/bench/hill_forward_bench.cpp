@@ -6,8 +6,6 @@
 //
 //   ./hill_forward_bench --benchmark_min_time=1
 
-#include <benchmark/benchmark.h>
-
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -19,6 +17,7 @@
 
 #include "emg/activation.hpp"
 #include "hill/forward.hpp"
+#include "tests/bench/judged.hpp"
 
 namespace {
 
@@ -141,31 +140,14 @@ double asked_per_s(const std::string& chain) {
   return rigid ? 15e6 : 3e6;
 }
 
-class Judge : public benchmark::ConsoleReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    ConsoleReporter::ReportRuns(runs);
-    for (const Run& r : runs) {
-      const std::string name = r.benchmark_name();
-      if (r.counters.at("muscle_frames_per_s") >= asked_per_s(name)) continue;
-      missed_.push_back(fmt::format("{}: {:.3g} muscle-frames/s, asked {:.3g}", name,
-                                    double{r.counters.at("muscle_frames_per_s")}, asked_per_s(name)));
-    }
-  }
-  const std::vector<std::string>& missed() const { return missed_; }
-
- private:
-  std::vector<std::string> missed_;
-};
+std::string too_slow(const benchmark::BenchmarkReporter::Run& run) {
+  const double reached = run.counters.at("muscle_frames_per_s"), asked = asked_per_s(run.benchmark_name());
+  return reached >= asked ? "" : fmt::format("{:.3g} muscle-frames/s, asked {:.3g}", reached, asked);
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   register_chains();
-  Judge judge;
-  benchmark::RunSpecifiedBenchmarks(&judge);
-  for (const std::string& line : judge.missed()) fmt::print(stderr, "too slow: {}\n", line);
-  return judge.missed().empty() ? 0 : 1;
+  return bench::run_judged(argc, argv, too_slow);
 }

@@ -2,32 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "fem/limb/muscle_reading.hpp"
-#include "fem/limb/upper_limb.hpp"
+#include "tests/fem/limb/coarse_arm.hpp"
 
 // The triceps slides along the humerus from 10 to 150 deg and back.
 namespace brachium::fem {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
-
 MuscleStates triceps(double tolerance_m) {
-  LimbMesh coarse;
-  coarse.belly_cells = 4;
-  const UpperLimb arm = generic_arm(coarse);
-  SolvedMuscleOptions options;
-  options.slopes = false;
-  options.contact_tolerance_m = tolerance_m;
-  return {arm.triceps, arm.range, arm.hinge, arm.humerus, options};
-}
-
-double contact_force(const SolvedMuscle& s) {
-  double sum = 0.0;
-  for (const BoneContact& c : s.contacts) sum += c.force_n;
-  return sum;
+  const UpperLimb arm = coarse_arm();
+  return states_of(arm, arm.triceps, tolerance_m);
 }
 
 /// Turns of a curve that are more than `least` deep: a smooth one has few, one that chatters has many.

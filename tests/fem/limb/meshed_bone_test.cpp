@@ -2,38 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <vector>
 
 #include "fem/contact/distance_grid.hpp"
-#include "fem/limb/upper_limb.hpp"
 #include "tests/fem/contact/sphere_mesh.hpp"
+#include "tests/fem/limb/coarse_arm.hpp"
 
 namespace brachium::fem {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double degree = std::numbers::pi / 180.0;
-
-UpperLimb coarse_arm() {
-  LimbMesh coarse;
-  coarse.belly_cells = 4;
-  return generic_arm(coarse);
-}
-
-MuscleStates states_of(const UpperLimb& arm, const MuscleBody& body, double tolerance_m = 0.0) {
-  SolvedMuscleOptions options;
-  options.slopes = false;
-  options.contact_tolerance_m = tolerance_m;
-  return {body, arm.range, arm.hinge, arm.humerus, options};
-}
-
-double contact_force(const SolvedMuscle& s) {
-  double sum = 0.0;
-  for (const BoneContact& c : s.contacts) sum += c.force_n;
-  return sum;
-}
 
 /// Triangles of a capsule: a sphere's, its halves moved apart along y.
 TriangleMesh capsule_mesh(const Capsule& capsule, int divisions) {
