@@ -12,18 +12,16 @@ namespace {
 
 /// Their muscles. Whether a body can be built with them is known when it runs: it may be scaled or fitted first.
 void check_parameters(const Options& options, const LimbScene& limb, Mistakes& mistakes) {
-  const auto take = [&](const data::InputError& e, const std::string& path) {
-    std::vector<data::Diagnostic> found = e.diagnostics();
-    if (!options.where(path).file.empty())
-      for (data::Diagnostic& d : found) d.where = options.where(path);
-    mistakes.take(found, options);
-  };
   for (const std::string key : {"pre_stretch", "max_stress_Pa"}) {
     for (const auto& [name, value] : options.number_map(key)) {
       try {
         if (name != "*") limb.muscle(name);
       } catch (const data::InputError& e) {
-        take(e, key + "." + name);
+        const auto where = options.where(key + "." + name);
+        std::vector<data::Diagnostic> found = e.diagnostics();
+        if (!where.file.empty())
+          for (data::Diagnostic& d : found) d.where = where;
+        mistakes.take(found, options);
       }
     }
   }
@@ -43,21 +41,22 @@ std::optional<LimbScene> check_limb(const CheckContext& context, Mistakes& mista
                    "add `scene = \"...\"` to [pipeline]");
     return limb;
   }
-  std::vector<std::string> names;
-  for (const LimbMuscle& m : limb->muscles) names.push_back(m.body.name);
-  mistakes.guarded(options, {}, [&] {
-    const data::Coordinate& coordinate =
-        coordinate_of(*context.scene, options.maybe_text("coordinate").value_or(""));
-    group_muscles(options, *context.scene, coordinate, nullptr, names);
-  });
+  check_groups(context, *limb, mistakes);
   return limb;
 }
 
+void check_groups(const CheckContext& context, const LimbScene& limb, Mistakes& mistakes) {
+  const Options& options = *context.options;
+  mistakes.guarded(options, {}, [&] {
+    const data::Coordinate& coordinate =
+        coordinate_of(*context.scene, options.maybe_text("coordinate").value_or(""));
+    group_muscles(options, *context.scene, coordinate, nullptr, limb.muscle_names());
+  });
+}
+
 std::vector<std::string> chosen_muscles(const Options& options, const LimbScene& limb) {
-  std::vector<std::string> names;
-  for (const LimbMuscle& m : limb.muscles) names.push_back(m.body.name);
   const std::vector<std::string>& only = options.texts("muscles");
-  return only.empty() ? names : data::match_names(only, names, "muscle");
+  return only.empty() ? limb.muscle_names() : data::match_names(only, limb.muscle_names(), "muscle");
 }
 
 }  // namespace brachium::pipelines

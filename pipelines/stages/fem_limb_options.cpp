@@ -101,11 +101,12 @@ LimbScene limb_of_options(const Options& options) {
   return read_limb(options.text("limb"), parse_limb_variant(options.text("variant")), mesh_of(options));
 }
 
-void set_limb_parameters(const Options& options, LimbScene& limb) {
-  change(options.number_map("pre_stretch"), limb, "pre_stretch",
-         [](fem::MuscleBody& b) -> double& { return b.pre_stretch; });
-  change(options.number_map("max_stress_Pa"), limb, "max_stress_Pa",
-         [](fem::MuscleBody& b) -> double& { return b.material.max_stress_pa; });
+Grouping group_muscles(const StageContext& context, const std::vector<std::string>& muscles) {
+  const data::Scene& scene = context.need_scene();
+  const StageData* with = context.maybe_input("subject");
+  return group_muscles(*context.options, scene,
+                       coordinate_of(scene, context.options->maybe_text("coordinate").value_or("")),
+                       with ? &subject_of(*with) : nullptr, muscles);
 }
 
 void make_stress_free(PreparedLimb& limb, const std::vector<std::string>& muscles,
@@ -123,17 +124,17 @@ PreparedLimb prepare_limb(const StageContext& context) {
   const Options& options = *context.options;
   PreparedLimb out;
   out.scene = limb_of_options(options);
-  std::vector<std::string> names;
-  for (const LimbMuscle& m : out.scene.muscles) names.push_back(m.body.name);
   if (options.text("scale_to") == "subject") {
     const data::Scene& scene = context.need_scene();
     const data::Coordinate& coordinate = coordinate_of(scene, options.maybe_text("coordinate").value_or(""));
-    const StageData* with = context.maybe_input("subject");
-    out.grouping = group_muscles(options, scene, coordinate, with ? &subject_of(*with) : nullptr, names);
+    out.grouping = group_muscles(context, out.scene.muscle_names());
     out.scaling = scale_limb(out.scene, *out.grouping, scene, coordinate, options.text("strength"));
   }
   if (const StageData* fitted = context.maybe_input("fitted")) apply_fitted(*fitted, out.scene);
-  set_limb_parameters(options, out.scene);
+  change(options.number_map("pre_stretch"), out.scene, "pre_stretch",
+         [](fem::MuscleBody& b) -> double& { return b.pre_stretch; });
+  change(options.number_map("max_stress_Pa"), out.scene, "max_stress_Pa",
+         [](fem::MuscleBody& b) -> double& { return b.material.max_stress_pa; });
   out.solving.solve = solve_options(options, 1);
   out.solving.step_rad = options.number("step_deg") * degree;
   out.solving.step_activation = options.number("step_activation");

@@ -16,10 +16,6 @@ namespace brachium::pipelines {
 /// limb, variant, mesh, scale_to, strength, pre_stretch, max_stress_Pa, contact_tolerance_m, group, solver.
 std::vector<OptionSpec> limb_option_specs();
 
-LimbScene limb_of_options(const Options& options);
-/// The options pre_stretch and max_stress_Pa. Throws InputError as read_limb does, and "missing-muscle".
-void set_limb_parameters(const Options& options, LimbScene& limb);
-
 /// The limb as the options say: read, scaled, with changed parameters; how muscles are grouped where a scene is
 /// at hand. Cheap: muscles in situ are made stress-free once everything else has been checked.
 struct PreparedLimb {
@@ -36,8 +32,14 @@ void make_stress_free(PreparedLimb& limb, const std::vector<std::string>& muscle
 /// What can be said of a limb's options before anything runs: its file, parameters by muscle, scaling, solver.
 /// The limb as its file has it where it can be read.
 std::optional<LimbScene> check_limb(const CheckContext& context, Mistakes& mistakes);
+/// Whether the scene's lumped muscles can be grouped to the limb's.
+void check_groups(const CheckContext& context, const LimbScene& limb, Mistakes& mistakes);
 /// Muscles that the option `muscles` chooses of the limb's, all where it is empty. InputError("no-match").
 std::vector<std::string> chosen_muscles(const Options& options, const LimbScene& limb);
+
+LimbScene limb_of_options(const Options& options);
+/// By the options `coordinate` and `group` and the input `subject`, where there is one.
+Grouping group_muscles(const StageContext& context, const std::vector<std::string>& muscles);
 
 std::vector<fem::StatePoint> asked_states(const Options& options, const fem::AngleRange& range);
 

@@ -167,15 +167,13 @@ void FemQuantities::point(const Options& entry, const fem::CellStates& states, R
   const std::string name = entry.text("name");
   const fem::Located at = fem::locate(discretisation_, vector_of(entry, "point_m"));
   const fem::CellState s = states.at(at.cell, at.xi);
-  const double mean = s.cauchy_pa.trace() / 3.0;
   if (s.has_fibre) {
     row.number(name + "_fibre_stretch", "1", s.fibre_stretch);
     row.number(name + "_fibre_stress_Pa", "Pa", s.fibre_stress_pa);
     row.number(name + "_active_stress_Pa", "Pa", s.active_stress_pa);
   }
-  row.number(name + "_von_mises_Pa", "Pa",
-             std::sqrt(1.5) * (s.cauchy_pa - mean * Eigen::Matrix3d::Identity()).norm());
-  row.number(name + "_pressure_Pa", "Pa", -mean);
+  row.number(name + "_von_mises_Pa", "Pa", fem::von_mises_of(s.cauchy_pa));
+  row.number(name + "_pressure_Pa", "Pa", fem::pressure_of(s.cauchy_pa));
   row.number(name + "_jacobian", "1", s.jacobian);
   const char axes[] = "xyz";
   for (int i = 0; i < 3; ++i)

@@ -40,15 +40,13 @@ class Study {
         out_(out),
         scene_(context.need_scene()),
         coordinate_(coordinate_of(scene_, options_.maybe_text("coordinate").value_or(""))),
-        rung_(limb_rung(context)) {
-    const StageData* with = context.maybe_input("subject");
-    grouping_ =
-        group_muscles(options_, scene_, coordinate_, with ? &subject_of(*with) : nullptr, rung_->muscles());
-  }
+        rung_(limb_rung(context)),
+        grouping_(group_muscles(context, rung_->muscles())) {}
 
   void run() {
     begin_output(context_, context_.input("activation"), out_);
     for (const std::string& name : context_.trials) trials_.push_back(prepare(name));
+    rung_->begin(context_);
     results_.assign(rung_->muscles().size(), std::vector<MuscleFrames>(trials_.size()));
     std::atomic<std::size_t> done{0};
     data::parallel_for(rung_->muscles().size(), context_.threads, [&](std::size_t m) {
@@ -78,14 +76,8 @@ class Study {
     Trial trial;
     std::vector<std::vector<double>> activation;
     for (const MuscleGroup& group : grouping_.groups) {
-      std::vector<double> mean(frames.time.count, 0.0);
-      for (std::size_t k = 0; k < group.members.size(); ++k) {
-        const std::vector<double> a =
-            activation_at(frames, *activations.signals, t, info.signal_index(group.members[k]),
-                          options_.text("outside_activation") == "clamp", trial.brought);
-        for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += group.strength_n[k] / group.sum_n() * a[i];
-      }
-      activation.push_back(std::move(mean));
+      activation.push_back(group_activation(frames, group, *activations.signals, t,
+                                            options_.text("outside_activation") == "clamp", trial.brought));
     }
     const auto every = static_cast<std::size_t>(options_.integer("decimate"));
     trial.time = {frames.time.rate_hz / static_cast<double>(every), frames.time.start_s,
@@ -261,13 +253,7 @@ std::vector<data::Diagnostic> check(const CheckContext& context) {
   if (!options.has("limb")) return std::move(mistakes).list();
   const std::optional<LimbScene> limb = check_limb(context, mistakes);
   if (!limb || !context.scene || options.text("scale_to") != "none") return std::move(mistakes).list();
-  std::vector<std::string> names;
-  for (const LimbMuscle& m : limb->muscles) names.push_back(m.body.name);
-  mistakes.guarded(options, {}, [&] {
-    const data::Coordinate& coordinate =
-        coordinate_of(*context.scene, options.maybe_text("coordinate").value_or(""));
-    group_muscles(options, *context.scene, coordinate, nullptr, names);
-  });
+  check_groups(context, *limb, mistakes);
   return std::move(mistakes).list();
 }
 

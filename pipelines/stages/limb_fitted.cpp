@@ -27,12 +27,14 @@ void apply_fitted(const StageData& fitted, LimbScene& limb) {
     throw data::InputError("missing-table", fmt::format("stage `{}` left no fitted parameters", fitted.stage),
                            "wire the input to a stage optimise.muscle_forces");
   const data::Table& table = fitted.tables.at("fitted");
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const std::string& name = table.texts("muscle")[i];
-    limb.muscle(name);  // throws where there is none
-    for (LimbMuscle& m : limb.muscles)
-      if (m.body.name == name)
-        fem::set_body_value(m.body, table.texts("parameter")[i], table.numbers("value")[i]);
+  for (const std::string& name : table.texts("muscle")) limb.muscle(name);  // throws where there is none
+  for (LimbMuscle& m : limb.muscles) {
+    std::vector<std::pair<std::string, double>> values;
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+      if (table.texts("muscle")[i] == m.body.name)
+        values.emplace_back(table.texts("parameter")[i], table.numbers("value")[i]);
+    }
+    fem::set_body_values(m.body, values);
   }
   for (const LimbMuscle& m : limb.muscles) fem::check(m.body, limb.range);
 }

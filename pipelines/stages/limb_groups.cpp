@@ -93,6 +93,19 @@ double MuscleGroup::sum_n() const {
   return std::accumulate(strength_n.begin(), strength_n.end(), 0.0);
 }
 
+std::vector<double> group_activation(const CommonFrames& frames, const MuscleGroup& group,
+                                     const data::SessionSource& source, std::size_t trial, bool clamp,
+                                     std::size_t& brought) {
+  const data::TrialInfo& info = source.info().trials[trial];
+  std::vector<double> mean(frames.time.count, 0.0);
+  for (std::size_t k = 0; k < group.members.size(); ++k) {
+    const std::vector<double> a =
+        activation_at(frames, source, trial, info.signal_index(group.members[k]), clamp, brought);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += group.strength_n[k] / group.sum_n() * a[i];
+  }
+  return mean;
+}
+
 OptionSpec group_option() {
   return list_option(
       "group",

@@ -21,6 +21,7 @@
 #include "data/model/subject.hpp"
 #include "pipelines/stage.hpp"
 #include "pipelines/stages/limb_scene.hpp"
+#include "pipelines/stages/moment_frames.hpp"
 
 namespace brachium::pipelines {
 
@@ -43,6 +44,11 @@ OptionSpec group_option();
 /// "contradiction" for a member of two groups.
 Grouping group_muscles(const Options& options, const data::Scene& scene, const data::Coordinate& coordinate,
                        const data::Subject* subject, const std::vector<std::string>& muscles);
+
+/// Mean activation of a group's members at the frames, weighted by strength; outside [0, 1] as activation_at does.
+std::vector<double> group_activation(const CommonFrames& frames, const MuscleGroup& group,
+                                     const data::SessionSource& source, std::size_t trial, bool clamp,
+                                     std::size_t& brought);
 
 struct LimbScaling {
   double length_factor = 1.0;

@@ -277,13 +277,16 @@ std::string to_string(LimbVariant variant) {
 }
 
 const LimbMuscle& LimbScene::muscle(const std::string& name) const {
-  std::vector<std::string> known;
-  for (const LimbMuscle& m : muscles) {
+  for (const LimbMuscle& m : muscles)
     if (m.body.name == name) return m;
-    known.push_back(m.body.name);
-  }
   throw data::InputError("missing-muscle", fmt::format("the limb `{}` has no muscle `{}`", title, name),
-                         data::suggest(name, known));
+                         data::suggest(name, muscle_names()));
+}
+
+std::vector<std::string> LimbScene::muscle_names() const {
+  std::vector<std::string> names;
+  for (const LimbMuscle& m : muscles) names.push_back(m.body.name);
+  return names;
 }
 
 namespace {

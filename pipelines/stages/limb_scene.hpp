@@ -55,6 +55,7 @@ struct LimbScene {
   double forearm_length_m = 0.0;  ///< elbow to wrist; 0: not given
 
   const LimbMuscle& muscle(const std::string& name) const;  ///< throws InputError("missing-muscle")
+  std::vector<std::string> muscle_names() const;
 };
 
 /// Reads the file strictly: every mistake at once with file:line:column. Geometry that cannot be built is

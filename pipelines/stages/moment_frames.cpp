@@ -15,13 +15,13 @@ CommonFrames CommonFrames::piece(std::size_t from, std::size_t count) const {
 }
 
 CommonFrames common_frames(const data::SignalInfo& activation, const data::Signal& angle,
-                           const std::optional<data::Signal>& velocity, const std::string& trial) {
+                           const std::optional<data::Signal>& other, const std::string& trial) {
   const data::SignalInfo& a = activation;
   double from = std::max(a.start_time_s, angle.info.start_time_s),
          to = std::min(a.end_time_s(), angle.info.end_time_s());
-  if (velocity) {
-    from = std::max(from, velocity->info.start_time_s);
-    to = std::min(to, velocity->info.end_time_s());
+  if (other) {
+    from = std::max(from, other->info.start_time_s);
+    to = std::min(to, other->info.end_time_s());
   }
   const double slack = 1e-6;  // of a sample: time stamps are decimal numbers
   const double first = std::ceil((from - a.start_time_s) * a.rate_hz - slack),

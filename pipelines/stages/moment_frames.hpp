@@ -11,7 +11,7 @@
 
 namespace brachium::pipelines {
 
-/// The activations' own grid, where angle and velocity are known too.
+/// The activations' own grid, where the angle and another signal are known too.
 struct CommonFrames {
   data::TimeGrid time;
   std::size_t first = 0;  ///< activation sample that frame 0 is
@@ -22,7 +22,7 @@ struct CommonFrames {
 
 /// Throws InputError("no-common-window") naming the trial where fewer than 9 frames are common.
 CommonFrames common_frames(const data::SignalInfo& activation, const data::Signal& angle,
-                           const std::optional<data::Signal>& velocity, const std::string& trial);
+                           const std::optional<data::Signal>& other, const std::string& trial);
 
 /// Kinematics on such frames.
 struct MomentFrames : CommonFrames {

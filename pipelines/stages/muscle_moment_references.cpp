@@ -29,35 +29,33 @@ std::vector<ReferenceForce> frames_of(const StageContext& context, const std::st
   const std::size_t t = trial_index(model, trial), at = trial_index(activations, trial);
   const data::TrialInfo &info = model.signals->info().trials[t],
                         &driven = activations.signals->info().trials[at];
-  std::vector<double> time, moment, activation;
-  for (std::size_t k = 0; k < group.members.size(); ++k) {
-    const std::string& name = group.members[k];
-    const data::Signal force = model.signals->signal(t, info.signal_index(name + "_force")),
-                       arm = model.signals->signal(t, info.signal_index(name + "_moment_arm")),
-                       a = activations.signals->signal(at, driven.signal_index(name));
-    if (k == 0) {
-      for (std::size_t i = 0; i < force.samples.size(); ++i) {
-        const double s = force.info.time_s(i);
-        if (s >= std::max(angle.info.start_time_s, a.info.start_time_s) &&
-            s <= std::min(angle.info.end_time_s(), a.info.end_time_s()))
-          time.push_back(s);
-      }
-      moment.assign(time.size(), 0.0);
-      activation.assign(time.size(), 0.0);
-    }
-    const std::vector<double> f = data::evaluate_at(force, time), r = data::evaluate_at(arm, time),
-                              own = data::evaluate_at(a, time);
-    for (std::size_t i = 0; i < time.size(); ++i) {
-      moment[i] += f[i] * r[i];
-      activation[i] += group.strength_n[k] / group.sum_n() * std::clamp(own[i], 0.0, 1.0);
-    }
+  const auto signal = [&](const std::string& name) {
+    return model.signals->signal(t, info.signal_index(name));
+  };
+  const std::string& first = group.members.front();
+  const MomentFrames frames = kinematics_at(
+      common_frames(driven.signals[driven.signal_index(first)], angle, signal(first + "_force"), trial),
+      angle, std::nullopt);
+  std::vector<double> time(frames.time.count), moment(frames.time.count, 0.0);
+  for (std::size_t i = 0; i < time.size(); ++i) time[i] = frames.time.time_s(i);
+  for (const std::string& name : group.members) {
+    const std::vector<double> f = data::evaluate_at(signal(name + "_force"), time),
+                              r = data::evaluate_at(signal(name + "_moment_arm"), time);
+    for (std::size_t i = 0; i < time.size(); ++i) moment[i] += f[i] * r[i];
   }
-  const std::vector<double> q = data::evaluate_at(angle, time);
+  std::size_t brought = 0;
+  const std::vector<double> a = group_activation(frames, group, *activations.signals, at, true, brought);
   std::vector<ReferenceForce> out;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    if (q[i] >= range.lower_rad && q[i] <= range.upper_rad)
-      out.push_back({q[i], activation[i], moment[i], 1.0, "moments", Measure::moment});
+    const double q = frames.angle_rad[i];
+    if (q >= range.lower_rad && q <= range.upper_rad)
+      out.push_back({q, a[i], moment[i], 1.0, "moments", Measure::moment});
   }
+  if (context.say && (brought > 0 || out.size() < time.size()))
+    context.say(
+        fmt::format("{}, trial `{}`: {} samples of activation brought into [0, 1], {} of {} frames outside "
+                    "the limb's angles left out",
+                    group.muscle, trial, brought, time.size() - out.size(), time.size()));
   return out;
 }
 

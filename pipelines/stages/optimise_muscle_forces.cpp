@@ -188,20 +188,7 @@ std::vector<std::string> changed_parameters(const Options& options) {
         names.push_back(o.text("parameter"));
     }
   }
-  // In the order in which one after the other can be set (fem/limb/body_parameters.hpp).
-  std::vector<std::string> ordered;
-  for (const fem::BodyParameter& p : fem::body_parameters())
-    if (std::find(names.begin(), names.end(), p.name) != names.end()) ordered.push_back(p.name);
-  return ordered;
-}
-
-/// Where the limb is not scaled, and moments are wired all the same.
-Grouping grouped(const StageContext& context, const std::vector<std::string>& muscles) {
-  const data::Scene& scene = context.need_scene();
-  const StageData* with = context.maybe_input("subject");
-  return group_muscles(*context.options, scene,
-                       coordinate_of(scene, context.options->maybe_text("coordinate").value_or("")),
-                       with ? &subject_of(*with) : nullptr, muscles);
+  return names;
 }
 
 }  // namespace
@@ -232,7 +219,7 @@ void run_muscle_forces(const StageContext& context, StageOutput& out) {
   }
   const std::vector<std::string> names = chosen_muscles(options, limb.scene);
   make_stress_free(limb, names, context);
-  if (context.maybe_input("moments") && !limb.grouping) limb.grouping = grouped(context, names);
+  if (context.maybe_input("moments") && !limb.grouping) limb.grouping = group_muscles(context, names);
   std::vector<MuscleStudy> studies;
   for (const std::string& name : names)
     studies.push_back(study_of(context, limb, limb.scene.muscle(name).body));

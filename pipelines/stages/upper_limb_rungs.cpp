@@ -77,7 +77,7 @@ class SolvedRung final : public LimbRung {
  public:
   SolvedRung(PreparedLimb limb, std::string method) : limb_(std::move(limb)), method_(std::move(method)) {
     limb_.solving.slopes = false;
-    for (const LimbMuscle& m : limb_.scene.muscles) names_.push_back(m.body.name);
+    names_ = limb_.scene.muscle_names();
     states_.resize(names_.size());
   }
 
@@ -86,6 +86,8 @@ class SolvedRung final : public LimbRung {
   double upper_rad() const override { return limb_.scene.range.upper_rad; }
   double upper_activation() const override { return 1.0; }
   std::string words() const override { return fmt::format("every frame solved ({})", limb_.scene.title); }
+
+  void begin(const StageContext& context) override { make_stress_free(limb_, names_, context); }
 
   MuscleFrames evaluate(std::size_t muscle, const LimbFrames& frames) override {
     MuscleFrames out;
@@ -112,11 +114,9 @@ class SolvedRung final : public LimbRung {
   fem::MuscleState at(std::size_t muscle, const LimbFrames& frames, std::size_t i, double activation) {
     try {
       auto& states = states_[muscle];
-      if (!states) {
-        make_stress_free(limb_.scene.muscles[muscle], limb_.scene, limb_.solving);
+      if (!states)
         states = std::make_unique<fem::MuscleStates>(limb_.scene.muscles[muscle].body, limb_.scene.range,
                                                      limb_.scene.hinge, limb_.scene.humerus, limb_.solving);
-      }
       return fem::map_state(states->solve_state(frames.angle_rad[i], activation), limb_.scene.hinge);
     } catch (const data::ConvergenceFailure& failure) {
       data::ConvergenceFailure::Details details = failure.details();

@@ -37,6 +37,8 @@ class LimbRung {
   virtual double upper_activation() const = 0;
   /// Which rung and what of; for verdict and report.
   virtual std::string words() const = 0;
+  /// What is costly, once all that is cheaper has been checked; before the first evaluate.
+  virtual void begin(const StageContext&) {}
   /// One muscle over frames that lie in range. Throws ConvergenceFailure naming muscle, trial and time.
   /// Called for different muscles from different threads at a time, for one muscle's trials one after
   /// another.

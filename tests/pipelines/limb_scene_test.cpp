@@ -8,6 +8,9 @@
 #include <numbers>
 
 #include "fem/contact/triangle_tree.hpp"
+#include "fem/limb/body_parameters.hpp"
+#include "pipelines/stages/common.hpp"
+#include "pipelines/stages/limb_fitted.hpp"
 #include "stages_support.hpp"
 
 namespace brachium::pipelines::tests {
@@ -158,6 +161,20 @@ TEST(LimbScene, RefusesGeometryThatCannotBeBuilt) {
           HasSubstr("error[missing-key]: the limb has no [[muscle]]"),
           HasSubstr(
               "error[out-of-range]: `range_deg` must be two increasing angles\n  --> limb.toml:4:13\n")));
+}
+
+TEST(LimbFitted, ParametersAreAllWhatTheTableSaysWhateverItsOrder) {
+  LimbScene limb = read_limb(shipped(), LimbVariant::rigid_tendon, {.belly_cells = 4});
+  const std::vector<std::pair<std::string, double>> wanted{
+      {"volume_m3", 2e-4}, {"end_radius_norm", 0.5}, {"belly_length_m", 0.18}};
+  TableBuilder table("fitted");
+  table.text("muscle").text("parameter").text("unit").number("value", "SI");
+  for (const auto& [name, value] : wanted) table.row({std::string("biceps"), name, std::string(), value});
+  StageData fitted;
+  fitted.tables["fitted"] = table.take();
+  apply_fitted(fitted, limb);
+  for (const auto& [name, value] : wanted)
+    EXPECT_NEAR(fem::body_value(limb.muscle("biceps").body, name), value, 1e-12 * value) << name;
 }
 
 }  // namespace
